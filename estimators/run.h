@@ -1,0 +1,22 @@
+/// Runs one estimator over one recording: the loop that every method shares.
+#pragma once
+
+#include "core/progress.h"
+#include "estimators/estimator.h"
+
+namespace tarmac::estimators {
+
+struct RunResult {
+  core::Estimate estimate;
+  std::vector<core::SweepDiagnostics> diagnostics;
+  core::RunTiming timing;
+  std::vector<std::string> log;  ///< what was unusual: dropped points, sweeps out of order, empty sweeps
+};
+
+/// Defined outcomes of bad data: non-finite points are dropped (counted in the log); a sweep that then has none is
+/// `empty`; a sweep that begins before its predecessor's end is dropped as `out_of_order`; an IMU sample not later than
+/// its predecessor is dropped; an estimator whose sensors are absent ends with RunStatus::not_initialised.
+RunResult run_estimator(const core::Recording& recording, const EstimatorEntry& entry, const core::ConfigNode& options,
+                        const EstimatorContext& context, const core::Progress& progress);
+
+}  // namespace tarmac::estimators

@@ -1,0 +1,57 @@
+/// The result of comparing one estimate with the truth: rows for tables, series for figures.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace tarmac::metrics {
+
+struct Row {
+  std::string estimate = "causal";  ///< causal or final
+  std::string metric;               ///< carries its unit: ate_se3_rmse_m
+  std::optional<double> value;      ///< empty = n/a
+  std::string unit;
+  std::optional<double> ci_low, ci_high;
+  std::string status = "ok";        ///< ok | n/a: reason | failed: reason
+};
+
+/// y over x, NaN where a value is missing.
+struct Series {
+  std::string name;  ///< "error_by_phase"
+  std::string x_label, y_label;  ///< with units: "distance [m]"
+  std::vector<double> x, y;
+  std::vector<double> low, high;  ///< a band, or empty
+};
+
+/// A sample of the map that the method built, aligned to the truth (first pose), with each point's error.
+struct MapSample {
+  std::vector<Eigen::Vector3f> p_world_m;  ///< where the aligned estimate puts the point
+  std::vector<float> error_m;
+  std::vector<std::uint8_t> moving;
+};
+
+struct Evaluation {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  std::string estimator;
+  std::string status = "ok";  ///< ok | not_initialised | failed | crashed | timed out | no output ...
+  std::string message;
+  double coverage = 0;        ///< share of sweeps that are scored
+  std::vector<Row> rows;
+  std::vector<Series> series;
+  MapSample map;              ///< stored apart, as map_sample.bin
+
+  const Row* row(const std::string& metric, const std::string& estimate = "causal") const;
+  const Series* find(const std::string& name) const;
+};
+
+/// evaluation.json (and map_sample.bin beside it when there is a map).
+void save_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation);
+Evaluation load_evaluation(const std::filesystem::path& folder);
+
+}  // namespace tarmac::metrics

@@ -1,0 +1,21 @@
+/// Metrics by name, for `tarmac list metrics`, `tarmac describe metric NAME` and the report's explanations.
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace tarmac::metrics {
+
+struct MetricEntry {
+  const char* name;       ///< "ate_se3_rmse_m"
+  const char* unit;       ///< "m"
+  bool lower_is_better;
+  const char* alignment;  ///< "first valid reference pose", "SE(3)", "none needed", ...
+  const char* meaning;    ///< one sentence
+  const char* source;     ///< definition or paper
+};
+
+std::span<const MetricEntry> metrics();
+const MetricEntry* find_metric(const std::string& name);
+
+}  // namespace tarmac::metrics

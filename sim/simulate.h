@@ -1,0 +1,67 @@
+/// Scene + motion + rig -> recording, with the truth beside it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "core/progress.h"
+#include "core/trajectory.h"
+#include "scenes/scene.h"
+
+namespace tarmac::sim {
+
+struct SimulationInput {
+  std::string scenario_name;
+  std::uint64_t seed = 1;
+  core::Duration duration{0};
+  std::shared_ptr<const scenes::Scene> scene;
+  std::shared_ptr<const core::SmoothTrajectory> motion;
+  core::ConfigNode rig;               ///< the scenario's `rig:` block: {lidar: {...}, imu: {...}, gravity_m_s2}
+  std::string resolved_scenario;      ///< stored as truth/scenario.yaml
+  std::string resolved_motion;        ///< stored as truth/motion.yaml
+};
+
+struct SimulationSettings {
+  int threads = 1;
+  bool fast = false;  ///< lifts the pinned instruction set: faster, hashes then hold on one kind of CPU only
+};
+
+struct SimulationSummary {
+  std::string recording_hash;
+  std::size_t sweeps = 0;
+  std::size_t rays = 0;
+  std::size_t points = 0;
+  std::size_t imu_samples = 0;
+  double wall_s = 0;
+  double cpu_s = 0;
+  double trace_cpu_s = 0;       ///< of that inside the ray tracer
+  double real_time_factor = 0;  ///< simulated seconds per wall second
+  std::string isa;              ///< instruction set of the tracer: "avx2"
+};
+
+/// Writes `recording_folder` (finished last) and `truth_folder`. Same input, same bytes, at any number of threads.
+/// Throws InputError for bad rig options; whatever `progress` throws leaves an incomplete recording that is refused.
+SimulationSummary simulate(const SimulationInput& input, const SimulationSettings& settings,
+                           const std::filesystem::path& recording_folder, const std::filesystem::path& truth_folder,
+                           const core::Progress& progress);
+
+/// The rig block with every option written out, indented by 2. Throws InputError for bad options.
+std::string resolve_rig(const core::ConfigNode& rig);
+
+/// What `tarmac list` and `tarmac describe` show.
+struct CatalogueEntry {
+  std::string name;
+  std::string summary;
+};
+std::vector<CatalogueEntry> lidar_catalogue();
+std::vector<CatalogueEntry> imu_catalogue();
+/// A text of facts and the channel table; throws InputError with did-you-mean for an unknown name.
+std::string describe_lidar(const std::string& name);
+std::string describe_imu(const std::string& name);
+std::vector<core::OptionDescription> describe_rig_options();
+
+}  // namespace tarmac::sim

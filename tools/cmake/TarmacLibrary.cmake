@@ -1,0 +1,76 @@
+# The layers of the house, kept by the compiler.
+#
+# A target sees only the folders that it declares: each gets a folder of links of its own, and that
+# folder is its whole include path into the project. Linking a library therefore never lends its headers.
+#
+#   tarmac_library(tarmac_estimators SEES core estimators SOURCES a.cpp b.cpp LINKS tarmac_core Eigen3::Eigen)
+#   tarmac_program(tarmac-estimate   SEES core io/sensor estimators SOURCES main.cpp LINKS ...)
+#   tarmac_test(core_test LABEL unit SEES core tests/support SOURCES time_test.cpp LINKS tarmac_core)
+
+function(tarmac_sees target)
+  set(root ${CMAKE_BINARY_DIR}/sees/${target})
+  file(REMOVE_RECURSE ${root})
+  foreach(folder IN LISTS ARGN)
+    if(NOT IS_DIRECTORY ${CMAKE_SOURCE_DIR}/${folder})
+      message(FATAL_ERROR "${target} SEES ${folder}, which is no folder of ${CMAKE_SOURCE_DIR}")
+    endif()
+    get_filename_component(parent ${root}/${folder} DIRECTORY)
+    file(MAKE_DIRECTORY ${parent})
+    file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${folder} ${root}/${folder} SYMBOLIC)
+  endforeach()
+  target_include_directories(${target} PRIVATE ${root})
+endfunction()
+
+function(tarmac_compile_options target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+    # The same bytes on every machine: a fused multiply-add rounds once where two instructions round twice.
+    -ffp-contract=off)
+  if(TARMAC_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+function(tarmac_library target)
+  cmake_parse_arguments(ARG "" "" "SEES;SOURCES;LINKS" ${ARGN})
+  add_library(${target} STATIC ${ARG_SOURCES})
+  tarmac_compile_options(${target})
+  tarmac_sees(${target} ${ARG_SEES})
+  target_link_libraries(${target} PUBLIC ${ARG_LINKS})
+endfunction()
+
+function(tarmac_program target)
+  cmake_parse_arguments(ARG "" "" "SEES;SOURCES;LINKS" ${ARGN})
+  add_executable(${target} ${ARG_SOURCES})
+  tarmac_compile_options(${target})
+  tarmac_sees(${target} ${ARG_SEES})
+  target_link_libraries(${target} PRIVATE ${ARG_LINKS})
+endfunction()
+
+# One program of tests. LABEL is unit (all of them together stay below a minute) or slow.
+function(tarmac_test target)
+  cmake_parse_arguments(ARG "" "LABEL" "SEES;SOURCES;LINKS" ${ARGN})
+  if(NOT ARG_LABEL MATCHES "^(unit|slow)$")
+    message(FATAL_ERROR "${target}: LABEL is unit or slow")
+  endif()
+  tarmac_program(${target} SEES ${ARG_SEES} SOURCES ${ARG_SOURCES} LINKS ${ARG_LINKS} GTest::gmock GTest::gtest_main)
+  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${ARG_LABEL})
+endfunction()
+
+# Writes the table of a registry, so that adding an entry is one line in a CMake list: no static-initialisation order,
+# nothing that the linker may drop. Each entry is an `extern const TYPE name` defined somewhere in the library.
+#
+#   tarmac_registry(table.cpp HEADER estimators/registry.h NAMESPACE tarmac::estimators TYPE EstimatorEntry
+#                   FUNCTION estimators ENTRIES kiss_icp rigid_icp)
+function(tarmac_registry file)
+  cmake_parse_arguments(ARG "" "HEADER;NAMESPACE;TYPE;FUNCTION" "ENTRIES" ${ARGN})
+  set(text "#include \"${ARG_HEADER}\"\n\nnamespace ${ARG_NAMESPACE} {\n\n")
+  set(addresses "")
+  foreach(entry IN LISTS ARG_ENTRIES)
+    string(APPEND text "extern const ${ARG_TYPE} ${entry};\n")
+    list(APPEND addresses "&${entry}")
+  endforeach()
+  list(JOIN addresses ", " addresses)
+  string(APPEND text "\nstd::span<const ${ARG_TYPE}* const> ${ARG_FUNCTION}() {\n"
+    "  static constexpr const ${ARG_TYPE}* table[] = {${addresses}};\n  return table;\n}\n\n}  // namespace ${ARG_NAMESPACE}\n")
+  file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)
+endfunction()
