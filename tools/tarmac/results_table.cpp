@@ -114,7 +114,9 @@ void print_results(const std::vector<metrics::Evaluation>& evaluations, bool jso
     for (const metrics::Evaluation& e : evaluations) {
       for (const metrics::Row& row : e.rows) rows.push_back(row_json(row, e.scenario, e.seed, e.estimator));
       if (e.rows.empty()) {
-        rows.push_back(row_json({.metric = "", .status = "failed: " + e.status}, e.scenario, e.seed, e.estimator));
+        metrics::Row none;
+        none.status = "failed: " + e.status;
+        rows.push_back(row_json(none, e.scenario, e.seed, e.estimator));
       }
     }
     fmt::print("{}\n", rows.dump(1));
