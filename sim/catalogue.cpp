@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "sim/imu/imu_model.h"
 #include "sim/rig_options.h"
 #include "sim/simulate.h"
 
@@ -47,6 +48,19 @@ std::string describe_lidar(const std::string& name) {
   return text;
 }
 
-std::vector<OptionDescription> describe_rig_options() { return describe_options<RigOptions>(); }
+std::vector<CatalogueEntry> imu_catalogue() {
+  std::vector<CatalogueEntry> entries;
+  for (const ImuModel& model : imu_models())
+    entries.push_back({std::string(model.name), fmt::format("{} ({})", model.title, model.grade)});
+  return entries;
+}
+
+std::string describe_imu(const std::string& name) { return describe_imu_model(imu_model(name)); }
+
+std::vector<OptionDescription> describe_rig_options() {
+  RigOptions options;
+  options.has_imu = true;
+  return describe_options(options);
+}
 
 }  // namespace tarmac::sim

@@ -1,5 +1,7 @@
 #include "sim/rig_options.h"
 
+#include <fmt/format.h>
+
 #include "core/error.h"
 
 namespace tarmac::sim {
@@ -19,11 +21,13 @@ void LidarOptions::visit(OptionVisitor& v) {
 
 void RigOptions::visit(OptionVisitor& v) {
   v.group("lidar", lidar, "a spinning LiDAR");
+  if (has_imu) v.group("imu", imu, "an IMU; without this block the rig carries none");
   v("gravity_m_s2", gravity_m_s2, "magnitude of gravity", {.above = 0});
 }
 
 RigOptions read_rig(const ConfigNode& rig) {
   RigOptions options;
+  options.has_imu = rig.child("imu").present();
   rig.read(options);
   LidarOptions& lidar = options.lidar;
   const lidar::Profile& profile = lidar::profile(lidar.model);
@@ -33,20 +37,27 @@ RigOptions read_rig(const ConfigNode& rig) {
   } catch (const InputError& error) {
     rig.child("lidar").fail(error.what());
   }
+  if (options.has_imu && options.imu.rate_hz > imu_model(options.imu.model).max_rate_hz)
+    rig.child("imu").fail_at("rate_hz", fmt::format("{} Hz is more than {} gives; at most {} Hz", options.imu.rate_hz,
+                                                    options.imu.model, imu_model(options.imu.model).max_rate_hz));
   lidar.columns = mode.columns;
   lidar.sweep_rate_hz = mode.rate_hz;
   return options;
 }
 
-LidarSheet sheet_of(const LidarOptions& options) {
-  const lidar::Profile& profile = lidar::profile(options.model);
-  LidarSheet sheet;
-  sheet.model = options.model;
-  sheet.T_body_lidar = options.T_body_lidar;
-  sheet.sweep_rate_hz = options.sweep_rate_hz;
-  sheet.min_range_m = profile.min_range_m;
-  sheet.max_range_m = profile.max_range_m;
-  return sheet;
+Rig data_sheet(const RigOptions& options) {
+  const lidar::Profile& profile = lidar::profile(options.lidar.model);
+  LidarSheet lidar;
+  lidar.model = options.lidar.model;
+  lidar.T_body_lidar = options.lidar.T_body_lidar;
+  lidar.sweep_rate_hz = options.lidar.sweep_rate_hz;
+  lidar.min_range_m = profile.min_range_m;
+  lidar.max_range_m = profile.max_range_m;
+  Rig rig;
+  rig.gravity_m_s2 = options.gravity_m_s2;
+  rig.lidars.push_back(lidar);
+  if (options.has_imu) rig.imus.push_back(imu_sheet(options.imu));
+  return rig;
 }
 
 }  // namespace tarmac::sim

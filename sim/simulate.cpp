@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/recording.h"
+#include "sim/imu/imu.h"
 #include "sim/raycast/tracer.h"
 #include "sim/rig_options.h"
 #include "sim/sweep_pipeline.h"
@@ -49,6 +50,15 @@ std::int64_t sweeps_within(const lidar::FiringTable& firing, const SimulationInp
   return count;
 }
 
+std::size_t write_imu(const RigOptions& options, const SimulationInput& input, RecordingWriter& recording) {
+  const Time end = std::min(Time(input.duration), input.motion->end());
+  const std::vector<ImuSample> samples = synthesize_imu(*input.motion, options.imu, options.gravity_m_s2, Time{}, end, input.seed, "imu0");
+  const std::size_t chunk = std::max<std::size_t>(1, static_cast<std::size_t>(options.imu.rate_hz));  // a second each
+  for (std::size_t i = 0; i < samples.size(); i += chunk)
+    recording.write(0, std::span(samples).subspan(i, std::min(chunk, samples.size() - i)));
+  return samples.size();
+}
+
 }  // namespace
 
 SimulationSummary simulate(const SimulationInput& input, const SimulationSettings& settings,
@@ -58,9 +68,7 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   const int threads = std::max(1, settings.threads);
   const RigOptions options = read_rig(input.rig);
   const lidar::Profile& profile = lidar::profile(options.lidar.model);
-  Rig rig;
-  rig.gravity_m_s2 = options.gravity_m_s2;
-  rig.lidars.push_back(sheet_of(options.lidar));
+  const Rig rig = data_sheet(options);
 
   const auto tracer = std::make_shared<const raycast::Tracer>(input.scene, raycast::TracerSettings{threads, settings.fast});
   const lidar::SweepSimulator simulator(profile, {options.lidar.columns, options.lidar.sweep_rate_hz},
@@ -79,6 +87,7 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   labels.finish();
 
   SimulationSummary summary;
+  summary.imu_samples = options.has_imu ? write_imu(options, input, recording) : 0;
   summary.recording_hash = recording.finish();
   summary.sweeps = totals.sweeps;
   summary.rays = totals.rays;
