@@ -77,12 +77,14 @@ std::vector<std::filesystem::path> list_scenarios(const std::vector<std::filesys
     }
   }
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.filename() < b.filename(); });
-  files.erase(std::unique(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.filename() == b.filename(); }),
+  files.erase(std::unique(files.begin(), files.end(),
+                          [](const auto& a, const auto& b) { return a.filename() == b.filename(); }),
               files.end());
   return files;
 }
 
-std::filesystem::path find_scenario(const std::string& name_or_path, const std::vector<std::filesystem::path>& folders) {
+std::filesystem::path find_scenario(const std::string& name_or_path,
+                                    const std::vector<std::filesystem::path>& folders) {
   if (std::filesystem::is_regular_file(name_or_path)) return name_or_path;
   std::vector<std::string> names;
   for (const auto& file : list_scenarios(folders)) {
