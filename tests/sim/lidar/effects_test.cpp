@@ -10,7 +10,9 @@ namespace {
 
 constexpr double rad = M_PI / 180;
 
-const Profile& ouster() { return profile("ouster-os1-64-gen2"); }
+const Profile& ouster() {
+  return profile("ouster-os1-64-gen2");
+}
 
 Echoes echoes_at(const std::vector<double>& ranges_m, float signal = 0.5f) {
   Echoes e;
@@ -29,7 +31,9 @@ double signal_of(const scenes::Material& material, double incidence_deg) {
   return e.signal[0];
 }
 
-double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+double normal_cdf(double x) {
+  return 0.5 * std::erfc(-x / std::sqrt(2.0));
+}
 
 TEST(RangeNoise, ErrorOverSigmaIsStandardNormal) {
   // 4 ranges, one a step of the table; 400,000 draws in batches as a sweep has them.
@@ -81,7 +85,8 @@ TEST(ChannelBias, IsConstantPerChannelAndSpreadAsTheProfileSays) {
     n += bias.bias_m().size();
   }
   // 12800 draws: the standard deviation of their root mean square is 0.6 %.
-  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(n)), ouster().channel_bias_sigma_m, 0.03 * ouster().channel_bias_sigma_m);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(n)), ouster().channel_bias_sigma_m,
+              0.03 * ouster().channel_bias_sigma_m);
   const ChannelBias bias(ouster(), 1, 5, "test/channel_bias");
   Echoes e = echoes_at(std::vector<double>(64 * 3, 25.0));
   bias(e);
@@ -117,7 +122,8 @@ TEST(Detection, ShareOfEchoesIsTheModelsProbability) {
   for (const double range_m : {38.0, 45.0, 50.0, 55.0}) {
     const double expected = normal_cdf(model.snr(0.1, range_m) - ouster().threshold_snr);
     // 5 standard deviations of a share of 20000, and 0.3 % for the table that stands in for the power law.
-    EXPECT_NEAR(share_detected(0.1f, range_m), expected, 5 * std::sqrt(expected * (1 - expected) / 20000) + 0.003) << range_m;
+    EXPECT_NEAR(share_detected(0.1f, range_m), expected, 5 * std::sqrt(expected * (1 - expected) / 20000) + 0.003)
+        << range_m;
   }
 }
 
@@ -141,7 +147,8 @@ TEST(Detection, FallsWithRangeAndRisesWithReflectance) {
 TEST(Reflectance, LambertianSignalIsReflectanceTimesCosine) {
   scenes::Material lambert;
   lambert.diffuse = 0.4;
-  for (const double angle : {0.0, 30.0, 60.0, 85.0}) EXPECT_NEAR(signal_of(lambert, angle), 0.4 * std::cos(angle * rad), 1e-6);
+  for (const double angle : {0.0, 30.0, 60.0, 85.0})
+    EXPECT_NEAR(signal_of(lambert, angle), 0.4 * std::cos(angle * rad), 1e-6);
 }
 
 TEST(Reflectance, RoughSurfaceHoldsUpAtGrazingIncidence) {

@@ -13,8 +13,12 @@ namespace {
 using Eigen::Vector3d;
 constexpr double rad = M_PI / 180;
 
-double clockwise_azimuth(const Vector3d& d) { return std::atan2(-d.y(), d.x()); }
-double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * M_PI); }
+double clockwise_azimuth(const Vector3d& d) {
+  return std::atan2(-d.y(), d.x());
+}
+double wrapped(double angle_rad) {
+  return std::remainder(angle_rad, 2 * M_PI);
+}
 
 TEST(Firing, OusterColumnsComeAtTheirFractionOfTheRevolution) {
   const Profile& p = profile("ouster-os1-64-gen2");
@@ -42,12 +46,14 @@ TEST(Firing, OusterBeamsFollowTheMakersFormula) {
   const double r = 41.25, n = 15.806e-3;
   for (const std::int64_t m : {0, 1, 255, 512, 1023})
     for (std::size_t c = 0; c < p.channels(); ++c) {
-      const double te = 2 * M_PI * (1 - static_cast<double>(m) / 1024), ta = -p.azimuth_offset_cw_deg[c] * rad, phi = p.elevation_deg[c] * rad;
+      const double te = 2 * M_PI * (1 - static_cast<double>(m) / 1024), ta = -p.azimuth_offset_cw_deg[c] * rad,
+                   phi = p.elevation_deg[c] * rad;
       const Vector3d p_lidar((r - n) * std::cos(te + ta) * std::cos(phi) + n * std::cos(te),
                              (r - n) * std::sin(te + ta) * std::cos(phi) + n * std::sin(te), (r - n) * std::sin(phi));
       const Vector3d p_sensor(-p_lidar.x(), -p_lidar.y(), p_lidar.z() + 0.03618);
       const Cycle cycle = firing.cycle(sweep, m);
-      EXPECT_LT((firing.origin(cycle) + (r - firing.range_offset_m()) * firing.direction(cycle, c) - p_sensor).norm(), 1e-12);
+      EXPECT_LT((firing.origin(cycle) + (r - firing.range_offset_m()) * firing.direction(cycle, c) - p_sensor).norm(),
+                1e-12);
     }
 }
 
@@ -105,12 +111,13 @@ TEST(Firing, SweepsBeginAtTheRearAndTurnClockwise) {
     const auto azimuth = [&](std::int64_t k) {
       return std::atan2(firing.cycle(sweep, k).sin_azimuth, firing.cycle(sweep, k).cos_azimuth);
     };
-    EXPECT_NEAR(wrapped(azimuth(0) - M_PI), 0, 1.01 * step) << name;      // -x: the rear
+    EXPECT_NEAR(wrapped(azimuth(0) - M_PI), 0, 1.01 * step) << name;  // -x: the rear
     EXPECT_NEAR(wrapped(azimuth(1) - azimuth(0)), step, 0.01 * step) << name;
     // A quarter later the head looks to the left (+y): from the rear clockwise, seen from above.
     const Cycle quarter = firing.cycle(sweep, sweep.cycles / 4);
     double left = 0;
-    for (std::size_t c = 0; c < p.channels(); ++c) left += firing.direction(quarter, c).normalized().y() / static_cast<double>(p.channels());
+    for (std::size_t c = 0; c < p.channels(); ++c)
+      left += firing.direction(quarter, c).normalized().y() / static_cast<double>(p.channels());
     EXPECT_GT(left, 0.9) << name;
   }
 }
@@ -128,7 +135,8 @@ TEST(Firing, TilesHoldEveryFiringOnceAndNeighboursTogether) {
         if (tiles[i] == raycast::SweepTracer::no_ray) continue;
         seen.insert(tiles[i]);
         const auto direction = [&](std::uint32_t index) {
-          return firing.direction(firing.cycle(sweep, index / static_cast<std::uint32_t>(p.channels())), index % p.channels());
+          return firing.direction(firing.cycle(sweep, index / static_cast<std::uint32_t>(p.channels())),
+                                  index % p.channels());
         };
         EXPECT_GT(direction(tiles[i]).dot(direction(tiles[i / 16 * 16])), std::cos(7 * rad));
       }

@@ -24,8 +24,10 @@ TEST(Profile, EverySensorCountsItsRingsFromTheLowestBeam) {
     const Profile& p = profile(name);
     std::vector<std::size_t> by_elevation(p.channels());
     for (std::size_t c = 0; c < p.channels(); ++c) by_elevation[c] = c;
-    std::sort(by_elevation.begin(), by_elevation.end(), [&](std::size_t a, std::size_t b) { return p.elevation_deg[a] < p.elevation_deg[b]; });
-    for (std::size_t k = 0; k < by_elevation.size(); ++k) EXPECT_EQ(p.ring[by_elevation[k]], static_cast<double>(k)) << name;
+    std::sort(by_elevation.begin(), by_elevation.end(),
+              [&](std::size_t a, std::size_t b) { return p.elevation_deg[a] < p.elevation_deg[b]; });
+    for (std::size_t k = 0; k < by_elevation.size(); ++k)
+      EXPECT_EQ(p.ring[by_elevation[k]], static_cast<double>(k)) << name;
   }
 }
 

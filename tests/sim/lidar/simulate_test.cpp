@@ -31,7 +31,8 @@ scenes::Scene yard() {
   const auto drive = std::make_shared<tests::SteadyActor>();
   drive->p0_m = {14, -8, 1};
   drive->v_m_s = {0, 6, 0};
-  tests::add_instance(scene, tests::box({2, 1, 1}), tests::pose({0, 0, 0}), tests::add_actor(scene, drive, 3), scenes::Label::vehicle);
+  tests::add_instance(scene, tests::box({2, 1, 1}), tests::pose({0, 0, 0}), tests::add_actor(scene, drive, 3),
+                      scenes::Label::vehicle);
   return scene;
 }
 
@@ -49,7 +50,7 @@ SimulationInput input_of(const std::string& rig, std::uint64_t seed = 1, double 
   input.rig = ConfigNode::parse(rig, "test.yaml");
   input.resolved_scenario =
       "name: " + std::string(secret) + "\nseed: 1\nduration_s: 1\nscene: {kind: stand}\nmotion: {kind: still}\n";
-  input.resolved_motion = "kind: still\n";
+  input.resolved_motion = "  kind: still\n";
   return input;
 }
 
@@ -57,12 +58,14 @@ constexpr const char* small_rig = "lidar: {model: ouster-os1-64-gen2, columns: 5
 
 class Simulate : public testing::Test {
  protected:
-  fs::path folder = fs::path(testing::TempDir()) / ("tarmac_simulate_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  fs::path folder = fs::path(testing::TempDir()) /
+                    ("tarmac_simulate_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
   fs::path recording() const { return folder / "recording"; }
   fs::path truth() const { return folder / "truth"; }
 
   SimulationSummary run(const SimulationInput& input, int threads = 1) const {
-    return simulate(input, {.threads = threads, .fast = false}, recording(), truth(), [](double, const std::string&) {});
+    return simulate(input, {.threads = threads, .fast = false}, recording(), truth(),
+                    [](double, const std::string&) {});
   }
   std::string label_bytes() const { return core::read_file(truth() / "lidar0_labels.chunks"); }
   void TearDown() override { fs::remove_all(folder); }
@@ -137,10 +140,10 @@ TEST_F(Simulate, LabelsSayWhatEachPointHit) {
 }
 
 TEST_F(Simulate, RecordingHoldsNothingOfTheTruth) {
-  run(input_of(small_rig, 987654321));
+  run(input_of(small_rig, 905172638));
   for (const auto& entry : fs::recursive_directory_iterator(recording())) {
     const std::string bytes = core::read_file(entry.path());
-    for (const char* word : {secret, "987654321", "seed", "label", "instance", "truth", "scenario", "noise_scale"})
+    for (const char* word : {secret, "905172638", "seed", "label", "instance", "truth", "scenario", "noise_scale"})
       EXPECT_EQ(bytes.find(word), std::string::npos) << entry.path() << " holds " << word;
   }
 }
@@ -150,17 +153,19 @@ TEST_F(Simulate, InterruptedRunLeavesNoRecordingThatCouldBeTakenForWhole) {
   const auto stop_half_way = [](double fraction, const std::string&) {
     if (fraction > 0.5) throw Interrupted{};
   };
-  EXPECT_THROW(simulate(input_of(small_rig), {.threads = 2, .fast = false}, recording(), truth(), stop_half_way), Interrupted);
+  EXPECT_THROW(simulate(input_of(small_rig), {.threads = 2, .fast = false}, recording(), truth(), stop_half_way),
+               Interrupted);
   EXPECT_THROW(core::Recording::open(recording()), core::InputError);
 }
 
 TEST_F(Simulate, ReportsProgressWithRaysAndRealTimeFactor) {
   std::vector<double> fractions;
   std::string last;
-  simulate(input_of(small_rig), {.threads = 2, .fast = false}, recording(), truth(), [&](double fraction, const std::string& note) {
-    fractions.push_back(fraction);
-    last = note;
-  });
+  simulate(input_of(small_rig), {.threads = 2, .fast = false}, recording(), truth(),
+           [&](double fraction, const std::string& note) {
+             fractions.push_back(fraction);
+             last = note;
+           });
   EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
   EXPECT_DOUBLE_EQ(fractions.back(), 1);
   EXPECT_NE(last.find("Mrays/s"), std::string::npos) << last;
@@ -181,7 +186,7 @@ std::string complaint_about(const std::string& rig) {
 }
 
 TEST(Rig, MistakesAreNamedWithLineFieldAndWhatIsAllowed) {
-  const std::string typo = complaint_about("lidar:\n  model: ouster-os1-64\n");
+  const std::string typo = complaint_about("lidar:\n  model: ouster-os1-64-gen1\n");
   EXPECT_NE(typo.find("test.yaml:2"), std::string::npos) << typo;
   EXPECT_NE(typo.find("did you mean 'ouster-os1-64-gen2'?"), std::string::npos) << typo;
   const std::string mode = complaint_about("lidar: {columns: 1000}\n");

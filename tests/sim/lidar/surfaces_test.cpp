@@ -25,19 +25,21 @@ struct WorldPoint {
 };
 
 /// All points of sweeps 0 .. sweeps-1 of `sensor`, each placed by the pose at its own time.
-std::vector<WorldPoint> placed(const char* sensor, scenes::Scene scene, const tests::SteadyMotion& motion, int sweeps = 1) {
+std::vector<WorldPoint> placed(const char* sensor, scenes::Scene scene, const tests::SteadyMotion& motion,
+                               int sweeps = 1) {
   const auto shared_scene = std::make_shared<const scenes::Scene>(std::move(scene));
   const auto tracer = std::make_shared<const raycast::Tracer>(shared_scene, raycast::TracerSettings{});
   const Profile& p = profile(sensor);
-  const SweepSimulator simulator(p, mode_of(p, 0, 0), {.sensor = 0, .T_body_lidar = T_body_lidar}, no_noise(), 1, tracer,
-                                 shared_scene, std::make_shared<tests::SteadyMotion>(motion));
+  const SweepSimulator simulator(p, mode_of(p, 0, 0), {.sensor = 0, .T_body_lidar = T_body_lidar}, no_noise(), 1,
+                                 tracer, shared_scene, std::make_shared<tests::SteadyMotion>(motion));
   std::vector<WorldPoint> points;
   for (int k = 0; k < sweeps; ++k) {
     const SimulatedSweep simulated = simulator.sweep(k);
     for (std::size_t i = 0; i < simulated.sweep.size(); ++i) {
       const core::Time t = simulated.sweep.time(i);
       const SE3 T_world_lidar = motion.pose(t) * T_body_lidar;
-      points.push_back({T_world_lidar * simulated.sweep.point(i), T_world_lidar.translation(), t, simulated.instance[i]});
+      points.push_back(
+          {T_world_lidar * simulated.sweep.point(i), T_world_lidar.translation(), t, simulated.instance[i]});
     }
   }
   return points;
@@ -108,7 +110,8 @@ TEST_P(ExactSurfaces, PavementWithRelief) {
   ASSERT_GT(points.size(), 3000u);
   double macro_error_m = 0;
   for (const WorldPoint& point : points) {
-    if (std::abs(point.p_world.z() - point.origin_world.z()) < 0.011 * point.range_m()) continue;  // grazing: relief is left out
+    if (std::abs(point.p_world.z() - point.origin_world.z()) < 0.011 * point.range_m())
+      continue;  // grazing: relief is left out
     EXPECT_NEAR(point.p_world.z(), relief->height_m(point.p_world.x(), point.p_world.y()), 0.1e-3);
     macro_error_m = std::max(macro_error_m, std::abs(point.p_world.z()));
   }
@@ -139,11 +142,12 @@ TEST_P(ExactSurfaces, TurningAndBrakingVehicle) {
   EXPECT_GT(frozen_m, 0.5);  // where it was at the start, it is not
 }
 
-INSTANTIATE_TEST_SUITE_P(Sensors, ExactSurfaces, testing::Values("ouster-os1-64-gen2", "vlp-16"), [](const auto& instance) {
-  std::string name = instance.param;
-  std::erase(name, '-');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Sensors, ExactSurfaces, testing::Values("ouster-os1-64-gen2", "vlp-16"),
+                         [](const auto& instance) {
+                           std::string name = instance.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
 
 TEST(SweepSimulator, PlacingAllPointsByOnePoseWouldMissTheSurfaceByDecimetres) {
   // The counter-check of the tests above: they could not pass with the pose frozen at the sweep's begin.
