@@ -11,7 +11,8 @@ using Eigen::Vector3d;
 
 /// A ray that comes down on z = 0 at p, `elevation` below the horizon.
 Vector3d downward(double elevation_rad, double heading_rad) {
-  return {std::cos(elevation_rad) * std::cos(heading_rad), std::cos(elevation_rad) * std::sin(heading_rad), -std::sin(elevation_rad)};
+  return {std::cos(elevation_rad) * std::cos(heading_rad), std::cos(elevation_rad) * std::sin(heading_rad),
+          -std::sin(elevation_rad)};
 }
 
 TEST(Relief, HitLiesOnTheHeightFieldFromSteepToGrazingRays) {
