@@ -5,17 +5,16 @@
 //   trailer  u64 chunk count, u64 index offset, u64 digest over the index's times and digests, 8 bytes "TRMFOOT1"
 #include "core/chunk_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <zstd.h>
 
 #include <bit>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "core/error.h"
 
@@ -79,10 +78,11 @@ void ChunkData::add_bytes(std::size_t element_size, std::span<const std::byte> b
 }
 
 std::span<const std::byte> ChunkData::column_bytes(std::size_t k, std::size_t element_size) const {
-  if (k >= columns_.size()) throw DamagedFile(fmt::format("a chunk has {} columns, column {} was wanted", columns_.size(), k));
+  if (k >= columns_.size())
+    throw DamagedFile(fmt::format("a chunk has {} columns, column {} was wanted", columns_.size(), k));
   if (columns_[k].element_size != element_size) {
-    throw DamagedFile(fmt::format("column {} has elements of {} bytes, {} were expected", k, columns_[k].element_size,
-                                  element_size));
+    throw DamagedFile(
+        fmt::format("column {} has elements of {} bytes, {} were expected", k, columns_[k].element_size, element_size));
   }
   return columns_[k].bytes;
 }
@@ -102,8 +102,8 @@ struct ChunkWriter::State {
     offset += size;
   }
   [[noreturn]] void fail() const {
-    throw std::runtime_error(fmt::format("{}: cannot be written: {}; check that the disk has room", path.string(),
-                                         std::strerror(errno)));
+    throw std::runtime_error(
+        fmt::format("{}: cannot be written: {}; check that the disk has room", path.string(), std::strerror(errno)));
   }
 };
 
@@ -232,9 +232,15 @@ ChunkReader::ChunkReader(const std::filesystem::path& path) : state_(std::make_u
 
 ChunkReader::~ChunkReader() = default;
 
-std::size_t ChunkReader::size() const { return state_->index.size(); }
-Time ChunkReader::time(std::size_t i) const { return time_from_ns(state_->index.at(i).t_ns); }
-std::uint64_t ChunkReader::digest() const { return state_->digest; }
+std::size_t ChunkReader::size() const {
+  return state_->index.size();
+}
+Time ChunkReader::time(std::size_t i) const {
+  return time_from_ns(state_->index.at(i).t_ns);
+}
+std::uint64_t ChunkReader::digest() const {
+  return state_->digest;
+}
 
 ChunkData ChunkReader::read(std::size_t i) const {
   const IndexEntry& entry = state_->index.at(i);

@@ -33,7 +33,9 @@ struct ConfigNode::State {
 
 namespace {
 
-std::string joined(const std::string& path, const std::string& name) { return path.empty() ? name : path + "." + name; }
+std::string joined(const std::string& path, const std::string& name) {
+  return path.empty() ? name : path + "." + name;
+}
 
 [[noreturn]] void fail_where(const std::string& file, const YAML::Mark& mark, const std::string& path,
                              const std::string& message) {
@@ -196,9 +198,10 @@ class Reader final : public OptionVisitor {
       Eigen::Vector3d rpy_deg;
       fixed_of(rpy, "rpy_deg", rpy_deg.data(), 3);
       const Eigen::Vector3d a = rpy_deg * std::numbers::pi / 180;
-      T.linear() = (Eigen::AngleAxisd(a.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(a.y(), Eigen::Vector3d::UnitY()) *
-                    Eigen::AngleAxisd(a.x(), Eigen::Vector3d::UnitX()))
-                       .toRotationMatrix();
+      T.linear() =
+          (Eigen::AngleAxisd(a.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(a.y(), Eigen::Vector3d::UnitY()) *
+           Eigen::AngleAxisd(a.x(), Eigen::Vector3d::UnitX()))
+              .toRotationMatrix();
     }
     T.translation() = xyz_m;
     return T;
@@ -259,11 +262,19 @@ ConfigNode ConfigNode::parse(const std::string& text, const std::string& file_na
   return config;
 }
 
-ConfigNode ConfigNode::load(const std::string& path) { return parse(read_file(path), path); }
+ConfigNode ConfigNode::load(const std::string& path) {
+  return parse(read_file(path), path);
+}
 
-bool ConfigNode::present() const { return state_->node.IsDefined() && !state_->node.IsNull(); }
-bool ConfigNode::is_block() const { return present() && state_->node.IsMap(); }
-bool ConfigNode::is_list() const { return present() && state_->node.IsSequence(); }
+bool ConfigNode::present() const {
+  return state_->node.IsDefined() && !state_->node.IsNull();
+}
+bool ConfigNode::is_block() const {
+  return present() && state_->node.IsMap();
+}
+bool ConfigNode::is_list() const {
+  return present() && state_->node.IsSequence();
+}
 
 ConfigNode ConfigNode::child(const std::string& name) const {
   ConfigNode out;
@@ -399,7 +410,9 @@ std::string ConfigNode::text() const {
   return YAML::Dump(state_->node) + "\n";
 }
 
-const std::string& ConfigNode::file() const { return state_->file; }
+const std::string& ConfigNode::file() const {
+  return state_->file;
+}
 int ConfigNode::line() const {
   const YAML::Mark mark = present() ? state_->mark() : YAML::Mark::null_mark();
   return mark.is_null() ? 0 : mark.line + 1;

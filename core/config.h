@@ -39,7 +39,8 @@ class ConfigNode {
 
   /// Reads an options struct: absent keys keep their defaults, an unknown key, a wrong type or a value out of range
   /// throws InputError. Keys in `also_known` are allowed and left to the caller.
-  void read_into(const std::function<void(OptionVisitor&)>& visit, const std::vector<std::string>& also_known = {}) const;
+  void read_into(const std::function<void(OptionVisitor&)>& visit,
+                 const std::vector<std::string>& also_known = {}) const;
   template <class Options>
   void read(Options& options, const std::vector<std::string>& also_known = {}) const {
     read_into([&](OptionVisitor& v) { options.visit(v); }, also_known);

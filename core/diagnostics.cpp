@@ -13,8 +13,13 @@ namespace {
 
 ChunkData chunk_of(const SweepDiagnostics& s) {
   ChunkData data;
-  const std::int64_t numbers[] = {s.index,     s.iterations, s.converged, s.points_in,
-                                  s.points_used, s.residuals,  static_cast<std::int64_t>(s.rows.size())};
+  const std::int64_t numbers[] = {s.index,
+                                  s.iterations,
+                                  s.converged,
+                                  s.points_in,
+                                  s.points_used,
+                                  s.residuals,
+                                  static_cast<std::int64_t>(s.rows.size())};
   data.add<std::int64_t>(numbers);
   data.add_value(s.scale_m);
   data.add<double>({s.H_data.data(), 36});

@@ -33,10 +33,10 @@ struct SweepDiagnostics {
   std::int64_t index = 0;
   int iterations = 0;
   bool converged = false;
-  std::int32_t points_in = 0;      ///< points given to the method
-  std::int32_t points_used = 0;    ///< after sampling
-  std::int32_t residuals = 0;      ///< rows of the last iteration
-  double scale_m = 0;              ///< the loss's scale (KISS-ICP: sigma)
+  std::int32_t points_in = 0;         ///< points given to the method
+  std::int32_t points_used = 0;       ///< after sampling
+  std::int32_t residuals = 0;         ///< rows of the last iteration
+  double scale_m = 0;                 ///< the loss's scale (KISS-ICP: sigma)
   Matrix6 H_data = Matrix6::Zero();   ///< sum of w J^T J over data residuals, at the sweep's reference instant
   Matrix6 H_prior = Matrix6::Zero();  ///< the same of priors and regularisers
   std::vector<ResidualRow> rows;      ///< level full

@@ -80,8 +80,8 @@ ChunkData sweeps_chunk(const std::vector<SweepResult>& sweeps) {
   std::vector<std::int64_t> numbers;
   std::vector<double> poses;
   for (const SweepResult& s : sweeps) {
-    numbers.insert(numbers.end(), {s.index, to_ns(s.begin), to_ns(s.end), to_ns(s.reference),
-                                   static_cast<std::int64_t>(s.status)});
+    numbers.insert(numbers.end(),
+                   {s.index, to_ns(s.begin), to_ns(s.end), to_ns(s.reference), static_cast<std::int64_t>(s.status)});
     append_pose(poses, s.T_map_body);
   }
   ChunkData data;
@@ -106,26 +106,36 @@ std::vector<SweepResult> sweeps_from_chunk(const ChunkData& data, const std::str
   return sweeps;
 }
 
-std::string text_of(const std::vector<char>& characters) { return {characters.begin(), characters.end()}; }
+std::string text_of(const std::vector<char>& characters) {
+  return {characters.begin(), characters.end()};
+}
 
 }  // namespace
 
 const char* name_of(SweepStatus status) {
   switch (status) {
-    case SweepStatus::ok: return "ok";
-    case SweepStatus::initialising: return "initialising";
-    case SweepStatus::lost: return "lost";
-    case SweepStatus::empty: return "empty";
-    case SweepStatus::out_of_order: return "out_of_order";
+    case SweepStatus::ok:
+      return "ok";
+    case SweepStatus::initialising:
+      return "initialising";
+    case SweepStatus::lost:
+      return "lost";
+    case SweepStatus::empty:
+      return "empty";
+    case SweepStatus::out_of_order:
+      return "out_of_order";
   }
   return "unknown";
 }
 
 const char* name_of(RunStatus status) {
   switch (status) {
-    case RunStatus::ok: return "ok";
-    case RunStatus::not_initialised: return "not_initialised";
-    case RunStatus::failed: return "failed";
+    case RunStatus::ok:
+      return "ok";
+    case RunStatus::not_initialised:
+      return "not_initialised";
+    case RunStatus::failed:
+      return "failed";
   }
   return "unknown";
 }

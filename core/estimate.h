@@ -40,8 +40,8 @@ struct Estimate {
   bool gravity_aligned = false;  ///< map's z axis is up
   bool has_causal = true;        ///< batch methods have `final` only
   bool has_final = false;
-  PiecewiseTrajectory causal;    ///< what was known when each sweep was done: what the method placed its points by
-  PiecewiseTrajectory final;     ///< after all data
+  PiecewiseTrajectory causal;  ///< what was known when each sweep was done: what the method placed its points by
+  PiecewiseTrajectory final;   ///< after all data
   std::vector<SweepResult> sweeps;
 
   const PiecewiseTrajectory& headline() const { return has_causal ? causal : final; }

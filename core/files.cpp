@@ -17,13 +17,14 @@
 namespace tarmac::core {
 
 void write_file(const std::filesystem::path& file, std::string_view content) {
-  const std::filesystem::path part = file.parent_path() / fmt::format(".{}.part-{}", file.filename().string(), ::getpid());
+  const std::filesystem::path part =
+      file.parent_path() / fmt::format(".{}.part-{}", file.filename().string(), ::getpid());
   const auto fail = [&](const char* what) {
     const std::string why = std::strerror(errno);
     std::error_code ignored;
     std::filesystem::remove(part, ignored);
-    throw InputError(fmt::format("{}: {}: {}; check that the folder exists, may be written to and has room", file.string(),
-                                 what, why));
+    throw InputError(fmt::format("{}: {}: {}; check that the folder exists, may be written to and has room",
+                                 file.string(), what, why));
   };
   std::FILE* out = std::fopen(part.c_str(), "wb");
   if (!out) fail("cannot be created");
@@ -43,8 +44,12 @@ std::string read_file(const std::filesystem::path& file) {
   return content.str();
 }
 
-std::string hex16(std::uint64_t value) { return fmt::format("{:016x}", value); }
+std::string hex16(std::uint64_t value) {
+  return fmt::format("{:016x}", value);
+}
 
-std::string hash_hex(std::string_view bytes) { return hex16(XXH3_64bits(bytes.data(), bytes.size())); }
+std::string hash_hex(std::string_view bytes) {
+  return hex16(XXH3_64bits(bytes.data(), bytes.size()));
+}
 
 }  // namespace tarmac::core

@@ -21,10 +21,10 @@ double alternating_series(double x, const double* reciprocals, int n) {
 }
 
 struct Coefficients {
-  double A;   ///< sin a / a
-  double B;   ///< (1 - cos a) / a^2
-  double C;   ///< (a - sin a) / a^3
-  double D;   ///< 1/a^2 - (1 + cos a)/(2 a sin a), of the inverse Jacobian
+  double A;  ///< sin a / a
+  double B;  ///< (1 - cos a) / a^2
+  double C;  ///< (a - sin a) / a^3
+  double D;  ///< 1/a^2 - (1 + cos a)/(2 a sin a), of the inverse Jacobian
 };
 
 Coefficients coefficients(double a) {
@@ -167,12 +167,14 @@ SE3 normalized(const SE3& T) {
 SE3 from_xyz_quat(const Eigen::Vector3d& xyz_m, const Eigen::Vector4d& quat_xyzw) {
   const double norm = quat_xyzw.norm();
   if (!(std::abs(norm - 1) <= 1e-3) || !xyz_m.allFinite()) {
-    throw InputError(fmt::format("a pose needs a finite translation and a quaternion x y z w of norm 1 (within 1e-3); "
-                                 "its norm is {:.6g}",
-                                 norm));
+    throw InputError(
+        fmt::format("a pose needs a finite translation and a quaternion x y z w of norm 1 (within 1e-3); "
+                    "its norm is {:.6g}",
+                    norm));
   }
   SE3 T = SE3::Identity();
-  T.linear() = Eigen::Quaterniond(quat_xyzw[3], quat_xyzw[0], quat_xyzw[1], quat_xyzw[2]).normalized().toRotationMatrix();
+  T.linear() =
+      Eigen::Quaterniond(quat_xyzw[3], quat_xyzw[0], quat_xyzw[1], quat_xyzw[2]).normalized().toRotationMatrix();
   T.translation() = xyz_m;
   return T;
 }
@@ -184,7 +186,9 @@ Eigen::Vector4d quat_xyzw(const SE3& T) {
   return q.coeffs();
 }
 
-bool all_finite(const SE3& T) { return T.matrix().allFinite(); }
+bool all_finite(const SE3& T) {
+  return T.matrix().allFinite();
+}
 
 }  // namespace se3
 }  // namespace tarmac::core

@@ -24,8 +24,12 @@ Eigen::Vector3d log(const Eigen::Matrix3d& R);
 /// Jl: Exp(phi + d) = Exp(Jl d) Exp(phi) to first order. The right Jacobian is Jl(-phi).
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi);
 Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi);
-inline Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& phi) { return left_jacobian(-phi); }
-inline Eigen::Matrix3d right_jacobian_inverse(const Eigen::Vector3d& phi) { return left_jacobian_inverse(-phi); }
+inline Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& phi) {
+  return left_jacobian(-phi);
+}
+inline Eigen::Matrix3d right_jacobian_inverse(const Eigen::Vector3d& phi) {
+  return left_jacobian_inverse(-phi);
+}
 /// Rotation angle in [0, pi], by atan2: no floor near 0, unlike acos of the trace.
 double angle_rad(const Eigen::Matrix3d& R);
 }  // namespace so3
@@ -37,8 +41,12 @@ Vector6 log(const SE3& T);
 Matrix6 adjoint(const SE3& T);
 Matrix6 left_jacobian(const Vector6& xi);
 Matrix6 left_jacobian_inverse(const Vector6& xi);
-inline Matrix6 right_jacobian(const Vector6& xi) { return left_jacobian(-xi); }
-inline Matrix6 right_jacobian_inverse(const Vector6& xi) { return left_jacobian_inverse(-xi); }
+inline Matrix6 right_jacobian(const Vector6& xi) {
+  return left_jacobian(-xi);
+}
+inline Matrix6 right_jacobian_inverse(const Vector6& xi) {
+  return left_jacobian_inverse(-xi);
+}
 /// The same motion with an exactly orthonormal rotation: call it after every product that accumulates.
 SE3 normalized(const SE3& T);
 /// From a translation [m] and a quaternion x, y, z, w; throws InputError when its norm is off 1 by more than 1e-3.

@@ -25,7 +25,8 @@ struct LidarSweep {
   Eigen::Vector3d point(std::size_t i) const { return {x_m[i], y_m[i], z_m[i]}; }
   Time time(std::size_t i) const { return begin + Duration(t_ns[i]); }
   void reserve(std::size_t n);
-  void push_back(const Eigen::Vector3f& p_lidar, std::int32_t point_t_ns, std::uint16_t point_ring, float point_intensity);
+  void push_back(const Eigen::Vector3f& p_lidar, std::int32_t point_t_ns, std::uint16_t point_ring,
+                 float point_intensity);
 };
 
 /// Angular rate [rad/s] and specific force [m/s^2] in the IMU's frame (static and level: f = (0, 0, +g)).

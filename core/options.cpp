@@ -23,8 +23,10 @@ std::string list_text(const double* values, std::size_t n) {
 
 /// Double-quoted YAML; plain words stay plain.
 std::string quoted(const std::string& text) {
-  const bool plain = !text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                                              "0123456789_-./") == std::string::npos &&
+  const bool plain = !text.empty() &&
+                     text.find_first_not_of(
+                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                         "0123456789_-./") == std::string::npos &&
                      std::isalpha(static_cast<unsigned char>(text[0])) && text != "true" && text != "false" &&
                      text != "null" && text != "Null" && text != "NULL" && text != "yes" && text != "no" && text != "on" && text != "off";
   if (plain) return text;
@@ -49,13 +51,25 @@ std::string pose_text(const SE3& T) {
 /// A visitor that turns every value into text and hands it on.
 class TextVisitor : public OptionVisitor {
  public:
-  void operator()(const char* name, bool& v, const char* m) override { take(name, "true or false", v ? "true" : "false", "", m); }
-  void operator()(const char* name, int& v, const char* m, Range r) override { take(name, "integer", fmt::format("{}", v), r.text(), m); }
-  void operator()(const char* name, std::int64_t& v, const char* m, Range r) override { take(name, "integer", fmt::format("{}", v), r.text(), m); }
-  void operator()(const char* name, double& v, const char* m, Range r) override { take(name, "number", number_text(v), r.text(), m); }
+  void operator()(const char* name, bool& v, const char* m) override {
+    take(name, "true or false", v ? "true" : "false", "", m);
+  }
+  void operator()(const char* name, int& v, const char* m, Range r) override {
+    take(name, "integer", fmt::format("{}", v), r.text(), m);
+  }
+  void operator()(const char* name, std::int64_t& v, const char* m, Range r) override {
+    take(name, "integer", fmt::format("{}", v), r.text(), m);
+  }
+  void operator()(const char* name, double& v, const char* m, Range r) override {
+    take(name, "number", number_text(v), r.text(), m);
+  }
   void operator()(const char* name, std::string& v, const char* m) override { take(name, "text", quoted(v), "", m); }
-  void operator()(const char* name, Eigen::Vector2d& v, const char* m) override { take(name, "2 numbers", list_text(v.data(), 2), "", m); }
-  void operator()(const char* name, Eigen::Vector3d& v, const char* m) override { take(name, "3 numbers", list_text(v.data(), 3), "", m); }
+  void operator()(const char* name, Eigen::Vector2d& v, const char* m) override {
+    take(name, "2 numbers", list_text(v.data(), 2), "", m);
+  }
+  void operator()(const char* name, Eigen::Vector3d& v, const char* m) override {
+    take(name, "3 numbers", list_text(v.data(), 3), "", m);
+  }
   void operator()(const char* name, std::vector<double>& v, const char* m, Range r) override {
     take(name, "list of numbers", list_text(v.data(), v.size()), r.text(), m);
   }
@@ -132,7 +146,8 @@ class Writer final : public TextVisitor {
   }
   void leave_item() override { indent_ -= 4; }
   void line(const std::string& content) {
-    text += dash_ ? std::string(static_cast<std::size_t>(indent_ - 2), ' ') + "- " : std::string(static_cast<std::size_t>(indent_), ' ');
+    text += dash_ ? std::string(static_cast<std::size_t>(indent_ - 2), ' ') + "- "
+                  : std::string(static_cast<std::size_t>(indent_), ' ');
     text += content + "\n";
     dash_ = false;
   }

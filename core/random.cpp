@@ -26,7 +26,9 @@ Philox::ctr_type block(const std::array<std::uint32_t, 2>& key, std::uint32_t na
 }
 
 /// The middle of the 2^-32 wide cell: never 0; in float the topmost cells round to 1.
-inline float unit_float(std::uint32_t bits) { return (static_cast<float>(bits) + 0.5f) * 0x1p-32f; }
+inline float unit_float(std::uint32_t bits) {
+  return (static_cast<float>(bits) + 0.5f) * 0x1p-32f;
+}
 
 /// Natural logarithm of u in (0, 1] without libm, so that every machine has the same bits: u = 2^e m with m in
 /// [sqrt(1/2), sqrt(2)), log m = 2 atanh z with z = (m - 1)/(m + 1), |z| < 0.172; the series' rest is below 3e-9.

@@ -18,13 +18,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr int kFormatVersion = 1;
 
-std::string lidar_file(std::size_t k) { return fmt::format("lidar{}.chunks", k); }
-std::string imu_file(std::size_t k) { return fmt::format("imu{}.chunks", k); }
+std::string lidar_file(std::size_t k) {
+  return fmt::format("lidar{}.chunks", k);
+}
+std::string imu_file(std::size_t k) {
+  return fmt::format("imu{}.chunks", k);
+}
 
 LidarSweep sweep_from_chunk(const ChunkData& data, const std::string& where) {
   LidarSweep sweep;
   const auto head = data.column<std::int64_t>(0);
-  if (head.size() != 4) throw DamagedFile(fmt::format("{}: a sweep's head has {} values, 4 were expected", where, head.size()));
+  if (head.size() != 4)
+    throw DamagedFile(fmt::format("{}: a sweep's head has {} values, 4 were expected", where, head.size()));
   sweep.index = head[0];
   sweep.begin = time_from_ns(head[1]);
   sweep.end = time_from_ns(head[2]);
@@ -89,7 +94,8 @@ struct RecordingWriter::State {
   std::vector<std::unique_ptr<ChunkWriter>> lidars, imus;
 };
 
-RecordingWriter::RecordingWriter(const std::filesystem::path& folder, const Rig& rig) : state_(std::make_unique<State>()) {
+RecordingWriter::RecordingWriter(const std::filesystem::path& folder, const Rig& rig)
+    : state_(std::make_unique<State>()) {
   state_->folder = folder;
   state_->rig = rig;
   std::error_code error;
@@ -172,11 +178,13 @@ Recording& Recording::operator=(Recording&&) noexcept = default;
 Recording Recording::open(const std::filesystem::path& folder) {
   const std::string name = folder.string();
   if (!std::filesystem::is_directory(folder)) {
-    throw InputError(fmt::format("{}: there is no such folder; a recording is made by `tarmac simulate` or `tarmac import`", name));
+    throw InputError(
+        fmt::format("{}: there is no such folder; a recording is made by `tarmac simulate` or `tarmac import`", name));
   }
   const std::filesystem::path manifest_file = folder / "manifest.json";
   if (!std::filesystem::exists(manifest_file)) {
-    throw DamagedFile(fmt::format("{}: no manifest.json, so the recording was never finished (or this is no recording); make it again", name));
+    throw DamagedFile(fmt::format(
+        "{}: no manifest.json, so the recording was never finished (or this is no recording); make it again", name));
   }
   Recording recording;
   State& state = *recording.state_;
@@ -185,15 +193,17 @@ Recording Recording::open(const std::filesystem::path& folder) {
   try {
     const Json manifest = Json::parse(read_file(manifest_file));
     if (manifest.value("format", "") != "tarmac-recording" || manifest.value("version", 0) != kFormatVersion) {
-      throw InputError(fmt::format("{}: format {} version {} is not tarmac-recording version {}; use the Tarmac that wrote it, or make it again",
-                                   manifest_file.string(), manifest.value("format", "?"), manifest.value("version", 0), kFormatVersion));
+      throw InputError(fmt::format(
+          "{}: format {} version {} is not tarmac-recording version {}; use the Tarmac that wrote it, or make it again",
+          manifest_file.string(), manifest.value("format", "?"), manifest.value("version", 0), kFormatVersion));
     }
     state.hash = manifest.at("hash").get<std::string>();
     // The text that was hashed, not what a Rig would be written as: a rotation's last digit may change on the way.
     rig_json = manifest.at("rig").dump(2);
     state.rig = rig_from_json(rig_json, manifest_file.string());
   } catch (const nlohmann::json::exception& error) {
-    throw DamagedFile(fmt::format("{}: cannot be read: {}; make the recording again", manifest_file.string(), error.what()));
+    throw DamagedFile(
+        fmt::format("{}: cannot be read: {}; make the recording again", manifest_file.string(), error.what()));
   }
   std::vector<std::uint64_t> digests;
   const auto open_stream = [&](std::vector<std::unique_ptr<ChunkReader>>& readers, const std::string& file) {
@@ -203,13 +213,18 @@ Recording Recording::open(const std::filesystem::path& folder) {
   for (std::size_t k = 0; k < state.rig.lidars.size(); ++k) open_stream(state.lidars, lidar_file(k));
   for (std::size_t k = 0; k < state.rig.imus.size(); ++k) open_stream(state.imus, imu_file(k));
   if (recording_hash(rig_json, digests) != state.hash) {
-    throw DamagedFile(fmt::format("{}: its streams do not match the hash in manifest.json; make the recording again", name));
+    throw DamagedFile(
+        fmt::format("{}: its streams do not match the hash in manifest.json; make the recording again", name));
   }
   return recording;
 }
 
-const Rig& Recording::rig() const { return state_->rig; }
-const std::string& Recording::hash() const { return state_->hash; }
+const Rig& Recording::rig() const {
+  return state_->rig;
+}
+const std::string& Recording::hash() const {
+  return state_->hash;
+}
 
 std::size_t Recording::sweep_count(std::size_t lidar) const {
   return lidar < state_->lidars.size() ? state_->lidars[lidar]->size() : 0;

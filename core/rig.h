@@ -16,7 +16,7 @@ struct LidarSheet {
   double sweep_rate_hz = 10;
   double min_range_m = 0;
   double max_range_m = 0;
-  Duration clock_offset{0};           ///< nominal: sensor stamp minus recording clock
+  Duration clock_offset{0};                ///< nominal: sensor stamp minus recording clock
   std::string stamp_convention = "begin";  ///< what a sweep's stamp stands for: begin | mid | end
 };
 

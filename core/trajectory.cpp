@@ -21,9 +21,9 @@ SE3 slerp_lerp(const SE3& T0, const SE3& T1, double s) {
   return T;
 }
 
-/// With R = R0 Exp(s w), w = Log(R0^T R1): a right perturbation of R1 moves w by Jr^-1(w) d1, one of R0 by -Jl^-1(w) d0;
-/// so R's own right perturbation is s Jr(s w) Jr^-1(w) d1, and (Exp(-s w) - s Jr(s w) Jl^-1(w)) d0. Translations are
-/// perturbed in their own pose's axes: p0 <- p0 + R0 rho0.
+/// With R = R0 Exp(s w), w = Log(R0^T R1): a right perturbation of R1 moves w by Jr^-1(w) d1, one of R0 by -Jl^-1(w)
+/// d0; so R's own right perturbation is s Jr(s w) Jr^-1(w) d1, and (Exp(-s w) - s Jr(s w) Jl^-1(w)) d0. Translations
+/// are perturbed in their own pose's axes: p0 <- p0 + R0 rho0.
 void slerp_lerp_jacobians(const SE3& T0, const SE3& T1, double s, const SE3& T, Matrix6& J0, Matrix6& J1) {
   const Eigen::Vector3d w = so3::log(T0.linear().transpose() * T1.linear());
   const Eigen::Matrix3d Jr_s = s * so3::right_jacobian(s * w);
@@ -35,7 +35,9 @@ void slerp_lerp_jacobians(const SE3& T0, const SE3& T1, double s, const SE3& T, 
   J1.bottomRightCorner<3, 3>() = Jr_s * so3::right_jacobian_inverse(w);
 }
 
-SE3 screw(const SE3& T0, const SE3& T1, double s) { return T0 * se3::exp(s * se3::log(T0.inverse() * T1)); }
+SE3 screw(const SE3& T0, const SE3& T1, double s) {
+  return T0 * se3::exp(s * se3::log(T0.inverse() * T1));
+}
 
 /// The same chain as for slerp, with the Jacobians of SE(3).
 void screw_jacobians(const SE3& T0, const SE3& T1, double s, Matrix6& J0, Matrix6& J1) {
@@ -45,8 +47,12 @@ void screw_jacobians(const SE3& T0, const SE3& T1, double s, Matrix6& J0, Matrix
   J0 = se3::adjoint(se3::exp(-s * xi)) - Jr_s * se3::left_jacobian_inverse(xi);
 }
 
-bool is_screw(SegmentModel m) { return m == SegmentModel::two_pose_screw || m == SegmentModel::sampled_screw; }
-bool is_held(SegmentModel m) { return m == SegmentModel::held || m == SegmentModel::sampled_hold; }
+bool is_screw(SegmentModel m) {
+  return m == SegmentModel::two_pose_screw || m == SegmentModel::sampled_screw;
+}
+bool is_held(SegmentModel m) {
+  return m == SegmentModel::held || m == SegmentModel::sampled_hold;
+}
 bool is_sampled(SegmentModel m) {
   return m == SegmentModel::sampled_screw || m == SegmentModel::sampled_slerp || m == SegmentModel::sampled_hold;
 }
@@ -89,13 +95,14 @@ Segment Segment::hold(Time t0, Time t1, const SE3& T) {
 Segment Segment::sampled(SegmentModel model, std::vector<Time> times, std::vector<SE3> poses) {
   if (!is_sampled(model)) throw std::invalid_argument("sampled() makes sampled segments only");
   if (times.empty() || times.size() != poses.size()) {
-    throw InputError(fmt::format("a sampled segment needs as many poses as times, at least one; it has {} poses and {} times",
-                                 poses.size(), times.size()));
+    throw InputError(
+        fmt::format("a sampled segment needs as many poses as times, at least one; it has {} poses and {} times",
+                    poses.size(), times.size()));
   }
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (times[i] <= times[i - 1]) {
-      throw InputError(fmt::format("sample {} at {} ns does not come after sample {} at {} ns", i, to_ns(times[i]), i - 1,
-                                   to_ns(times[i - 1])));
+      throw InputError(fmt::format("sample {} at {} ns does not come after sample {} at {} ns", i, to_ns(times[i]),
+                                   i - 1, to_ns(times[i - 1])));
     }
   }
   const Time first = times.front(), last = times.back();

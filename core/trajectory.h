@@ -24,10 +24,10 @@ class OutOfSpan : public std::out_of_range {
 /// Body frame: x forward, y left, z up. Derivatives are of the body frame's origin, seen in the world.
 struct Kinematics {
   SE3 T_world_body = SE3::Identity();
-  Eigen::Vector3d v_world = Eigen::Vector3d::Zero();      ///< [m/s]
-  Eigen::Vector3d a_world = Eigen::Vector3d::Zero();      ///< [m/s^2], gravity not included
-  Eigen::Vector3d omega_body = Eigen::Vector3d::Zero();   ///< [rad/s]
-  Eigen::Vector3d alpha_body = Eigen::Vector3d::Zero();   ///< [rad/s^2]
+  Eigen::Vector3d v_world = Eigen::Vector3d::Zero();     ///< [m/s]
+  Eigen::Vector3d a_world = Eigen::Vector3d::Zero();     ///< [m/s^2], gravity not included
+  Eigen::Vector3d omega_body = Eigen::Vector3d::Zero();  ///< [rad/s]
+  Eigen::Vector3d alpha_body = Eigen::Vector3d::Zero();  ///< [rad/s^2]
 };
 
 class Trajectory {

@@ -1,0 +1,151 @@
+#include "estimators/dead_reckoning/dead_reckoning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tarmac::estimators {
+
+using core::Duration;
+using core::SE3;
+using core::Time;
+using Eigen::Vector3d;
+
+DeadReckoning::DeadReckoning(const DeadReckoningOptions& options, const EstimatorContext& context)
+    : options_(options), gravity_m_s2_(context.rig.gravity_m_s2) {
+  if (context.rig.imus.empty()) {
+    cannot_start_ = "the rig has no IMU";
+  } else if (!context.rig.calibrated) {
+    cannot_start_ = "the recording has no calibration: the IMU's pose on the body is unknown";
+  } else if (!(context.rig.imus[0].rate_hz > 0)) {
+    cannot_start_ = "the IMU's data sheet gives no rate_hz";
+  }
+  if (!cannot_start_.empty()) return;
+  sheet_ = context.rig.imus[0];
+  period_ = core::duration_from_s(1 / sheet_.rate_hz);
+  static_start_.emplace(options, sheet_.T_body_imu.linear(), gravity_m_s2_, sheet_.rate_hz);
+}
+
+void DeadReckoning::add(const core::ImuSample& sample) {
+  if (!static_start_) return;
+  const Time middle = sample.t - sheet_.delay;
+  if (!start_) {
+    core::ImuSample centred = sample;
+    centred.t = middle;
+    start_ = static_start_->add(centred);
+    if (start_) begin_at(*start_, middle + period_ / 2);
+    return;
+  }
+  const Vector3d omega = sample.gyro_rad_s - start_->gyro_bias_rad_s, f = sample.accel_m_s2 - start_->accel_bias_m_s2;
+  const Time begin = middle - period_ / 2, end = middle + period_ / 2;
+  const Interval& last = intervals_.back();
+  // Half a period absorbs jittering stamps; more is a hole, crossed with the mean of its two sides.
+  if (begin - last.end > period_ / 2) {
+    const bool long_hole = static_cast<double>((begin - last.end).count()) >
+                           (options_.max_gap_periods - 1) * static_cast<double>(period_.count());
+    append((last.omega_rad_s + omega) / 2, (last.f_m_s2 + f) / 2, begin, long_hole);
+  }
+  if (end > intervals_.back().end) append(omega, f, end, false);
+}
+
+void DeadReckoning::begin_at(const StaticStart::Result& start, Time end) {
+  // The body's origin rests at the map's, and has done so all through the window.
+  Interval rest;
+  rest.start.t = end - core::duration_from_s(options_.rest_window_s);
+  rest.start.R_map_imu = start.R_map_imu;
+  const Eigen::Matrix3d R_map_body = start.R_map_imu * sheet_.T_body_imu.linear().transpose();
+  rest.start.p_map_m = R_map_body * sheet_.T_body_imu.translation();
+  rest.end = end;
+  rest.omega_rad_s.setZero();
+  rest.f_m_s2 = start.R_map_imu.transpose() * Vector3d(0, 0, gravity_m_s2_);
+  intervals_.push_back(rest);
+}
+
+void DeadReckoning::append(const Vector3d& omega_rad_s, const Vector3d& f_m_s2, Time end, bool hole) {
+  const InertialState start = state_at(intervals_.back(), intervals_.back().end);
+  intervals_.push_back({start, end, omega_rad_s, f_m_s2, hole});
+}
+
+InertialState DeadReckoning::state_at(const Interval& interval, Time t) const {
+  return propagate(interval.start, interval.omega_rad_s, interval.f_m_s2, gravity_m_s2_, t);
+}
+
+core::Segment DeadReckoning::motion_over(const core::LidarSweep& sweep) const {
+  const SE3 T_imu_body = sheet_.T_body_imu.inverse();
+  std::vector<Time> times;
+  std::vector<SE3> poses;
+  const auto node = [&](const Interval& interval, Time t) {
+    times.push_back(t);
+    poses.push_back(state_at(interval, t).T_map_imu() * T_imu_body);
+  };
+  for (const Interval& interval : intervals_) {
+    const bool last = &interval == &intervals_.back();
+    if (interval.end <= sweep.begin && !last) continue;
+    if (times.empty()) node(interval, sweep.begin);
+    if (last || interval.end >= sweep.end) {
+      // Samples arrive later than what they stand for: the last one's rate and force are taken to go on.
+      if (sweep.end > times.back()) node(interval, sweep.end);
+      break;
+    }
+    node(interval, interval.end);
+  }
+  return core::Segment::sampled(core::SegmentModel::sampled_slerp, std::move(times), std::move(poses));
+}
+
+bool DeadReckoning::in_hole(const core::LidarSweep& sweep) const {
+  const auto max_ns = options_.max_gap_periods * static_cast<double>(period_.count()) +
+                      static_cast<double>(std::max<std::int64_t>(0, sheet_.delay.count()));
+  if (static_cast<double>((sweep.end - intervals_.back().end).count()) > max_ns) return true;
+  return std::any_of(intervals_.begin(), intervals_.end(), [&](const Interval& interval) {
+    return interval.hole && interval.start.t < sweep.end && interval.end > sweep.begin;
+  });
+}
+
+SweepOutcome DeadReckoning::add(const core::LidarSweep& sweep) {
+  SweepOutcome outcome;
+  outcome.diagnostics.index = sweep.index;
+  outcome.diagnostics.points_in = static_cast<std::int32_t>(sweep.size());
+  outcome.result = {.index = sweep.index,
+                    .begin = sweep.begin,
+                    .end = sweep.end,
+                    .reference = sweep.end,
+                    .status = core::SweepStatus::initialising};
+  if (!covers(sweep)) return outcome;
+  outcome.result.status = in_hole(sweep) ? core::SweepStatus::lost : core::SweepStatus::ok;
+  outcome.motion.push_back(motion_over(sweep));
+  outcome.result.T_map_body = outcome.motion.back().poses.back();
+  outcome.diagnostics.converged = true;
+  while (intervals_.size() > 1 && intervals_.front().end <= sweep.end) intervals_.pop_front();
+  return outcome;
+}
+
+void DeadReckoning::finish(core::Estimate& estimate) {
+  estimate.gravity_aligned = true;
+  if (start_) return;
+  estimate.status = core::RunStatus::not_initialised;
+  if (!cannot_start_.empty()) {
+    estimate.message = cannot_start_;
+  } else if (!std::isfinite(static_start_->least_accel_spread_m_s2())) {
+    estimate.message = fmt::format("no {} s of IMU samples without a hole in the first {} s", options_.rest_window_s,
+                                   options_.rest_within_s);
+  } else {
+    estimate.message = fmt::format(
+        "no rest in the first {} s: the calmest {} s of specific force spread {:.3g} m/s^2 (at most {} is rest), or "
+        "the "
+        "rig turned faster than {} rad/s",
+        options_.rest_within_s, options_.rest_window_s, static_start_->least_accel_spread_m_s2(),
+        options_.rest_accel_spread_m_s2, options_.rest_gyro_rad_s);
+  }
+}
+
+extern const EstimatorEntry dead_reckoning;
+const EstimatorEntry dead_reckoning{.name = "dead-reckoning",
+                                    .summary = "the IMU integrated from a rest; no LiDAR",
+                                    .source = "strapdown integration; start as in VINS- and LIO-type systems",
+                                    .needs = Needs::imu,
+                                    .make = make_with<DeadReckoning, DeadReckoningOptions>,
+                                    .describe = describe_with<DeadReckoningOptions>,
+                                    .resolve = resolve_with<DeadReckoningOptions>};
+
+}  // namespace tarmac::estimators

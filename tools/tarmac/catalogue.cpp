@@ -1,0 +1,202 @@
+// `tarmac list` and `tarmac describe`: what there is, and one thing in full.
+#include <fmt/format.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "estimators/registry.h"
+#include "metrics/registry.h"
+#include "reports/report.h"
+#include "scenes/registry.h"
+#include "sim/simulate.h"
+#include "sim/truth/motion.h"
+#include "tools/tarmac/commands.h"
+#include "tools/tarmac/layout.h"
+#include "tools/tarmac/world.h"
+
+namespace tarmac::tools {
+namespace {
+
+constexpr int kPictureWidth_px = 1600, kPictureHeight_px = 900;
+
+struct Entry {
+  std::string name, summary;
+};
+
+/// A kind of thing that can be listed and described.
+struct Kind {
+  const char* plural;
+  const char* singular;
+  std::function<std::vector<Entry>()> list;
+  std::function<std::string(const std::string& name)> describe;
+};
+
+std::string options_text(const std::vector<core::OptionDescription>& options) {
+  if (options.empty()) return "no options\n";
+  std::string text = "options:\n";
+  for (const core::OptionDescription& o : options) {
+    text += fmt::format("  {:<32} {}", o.name, o.meaning);
+    if (!o.default_value.empty()) text += fmt::format(" (default {}", o.default_value);
+    if (!o.allowed.empty()) text += fmt::format("{}{}", o.default_value.empty() ? " (" : "; ", o.allowed);
+    if (!o.default_value.empty() || !o.allowed.empty()) text += ")";
+    text += "\n";
+  }
+  return text;
+}
+
+[[noreturn]] void unknown(const char* kind, const std::string& name, const std::vector<Entry>& known) {
+  std::vector<std::string> names;
+  std::string all;
+  for (const Entry& entry : known) {
+    names.push_back(entry.name);
+    all += (all.empty() ? "" : ", ") + entry.name;
+  }
+  const std::string guess = core::did_you_mean(name, names);
+  throw core::InputError(fmt::format("{} '{}': there is none of that name{}; known are {}", kind, name,
+                                     guess.empty() ? "" : fmt::format("; did you mean '{}'?", guess), all));
+}
+
+std::vector<Entry> scenario_entries() {
+  std::vector<Entry> entries;
+  for (const auto& file : scenarios::list_scenarios(scenario_folders())) {
+    entries.push_back({file.stem().string(), scenarios::load_scenario(file, {}).why});
+  }
+  return entries;
+}
+
+std::string describe_scenario(const std::string& name) {
+  const auto scenario = scenarios::load_scenario(scenarios::find_scenario(name, scenario_folders()), {});
+  return resolve_scenario(scenario, static_cast<std::uint64_t>(scenario.seed), {});
+}
+
+std::vector<Entry> scene_entries() {
+  std::vector<Entry> entries;
+  for (const auto* scene : scenes::scenes()) entries.push_back({scene->name, scene->summary});
+  return entries;
+}
+
+std::string describe_scene(const std::string& name) {
+  for (const auto* scene : scenes::scenes()) {
+    if (name != scene->name) continue;
+    const auto built = scene->make(core::ConfigNode(), 1);
+    return fmt::format("{}: {}\n{} triangles after instancing, {} materials, {} actors\n{}", scene->name,
+                       scene->summary, built.triangle_count(), built.materials.size(), built.actors.size(),
+                       options_text(scene->describe()));
+  }
+  unknown("scene", name, scene_entries());
+}
+
+std::vector<Entry> motion_entries() {
+  std::vector<Entry> entries;
+  for (const std::string& kind : sim::truth::motion_kinds()) entries.push_back({kind, ""});
+  return entries;
+}
+
+std::vector<Entry> catalogue_entries(const std::vector<sim::CatalogueEntry>& catalogue) {
+  std::vector<Entry> entries;
+  for (const auto& entry : catalogue) entries.push_back({entry.name, entry.summary});
+  return entries;
+}
+
+std::vector<Entry> estimator_entries() {
+  std::vector<Entry> entries;
+  for (const auto* entry : estimators::estimators()) entries.push_back({entry->name, entry->summary});
+  return entries;
+}
+
+std::string describe_estimator(const std::string& name) {
+  const auto* entry = estimators::find_estimator(name);
+  if (!entry) unknown("estimator", name, estimator_entries());
+  const char* needs = entry->needs == estimators::Needs::lidar ? "LiDAR"
+                      : entry->needs == estimators::Needs::imu ? "IMU"
+                                                               : "LiDAR and IMU";
+  return fmt::format("{}: {}\nsource: {}\nneeds: {}\n{}", entry->name, entry->summary, entry->source, needs,
+                     options_text(entry->describe()));
+}
+
+std::vector<Entry> metric_entries() {
+  std::vector<Entry> entries;
+  for (const auto& metric : metrics::metrics()) entries.push_back({metric.name, metric.meaning});
+  return entries;
+}
+
+std::string describe_metric(const std::string& name) {
+  const auto* metric = metrics::find_metric(name);
+  if (!metric) unknown("metric", name, metric_entries());
+  return fmt::format("{} [{}]: {}\nalignment: {}\n{} is better\nsource: {}\n", metric->name, metric->unit,
+                     metric->meaning, metric->alignment, metric->lower_is_better ? "lower" : "higher", metric->source);
+}
+
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> all = {
+      {"scenarios", "scenario", scenario_entries, describe_scenario},
+      {"scenes", "scene", scene_entries, describe_scene},
+      {"motions", "motion", motion_entries,
+       [](const std::string& name) { return options_text(sim::truth::describe_motion(name)); }},
+      {"sensors", "sensor", [] { return catalogue_entries(sim::lidar_catalogue()); }, sim::describe_lidar},
+      {"imus", "imu", [] { return catalogue_entries(sim::imu_catalogue()); }, sim::describe_imu},
+      {"estimators", "estimator", estimator_entries, describe_estimator},
+      {"metrics", "metric", metric_entries, describe_metric}};
+  return all;
+}
+
+void draw_picture(const DescribeArguments& arguments) {
+  scenes::Scene scene;
+  core::Time when{};
+  if (arguments.kind == "scene") {
+    for (const auto* entry : scenes::scenes()) {
+      if (arguments.name == entry->name) scene = entry->make(core::ConfigNode(), 1);
+    }
+  } else if (arguments.kind == "scenario") {
+    const auto scenario = scenarios::load_scenario(scenarios::find_scenario(arguments.name, scenario_folders()), {});
+    scene = scenes::make_scene(scenario.scene, static_cast<std::uint64_t>(scenario.seed));
+    when = core::time_from_s(scenario.duration_s / 2);
+  } else {
+    throw core::InputError(fmt::format("describe {} -o: only a scene or a scenario has a picture", arguments.kind));
+  }
+  reports::render_scene(arguments.picture, scene, when, kPictureWidth_px, kPictureHeight_px);
+}
+
+}  // namespace
+
+int list_command(const std::string& wanted, const CommonArguments& common) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  bool any = false;
+  for (const Kind& kind : kinds()) {
+    if (!wanted.empty() && wanted != kind.plural && wanted != kind.singular) continue;
+    any = true;
+    const std::vector<Entry> entries = kind.list();
+    if (common.json) {
+      json[kind.plural] = nlohmann::ordered_json::array();
+      for (const Entry& entry : entries)
+        json[kind.plural].push_back({{"name", entry.name}, {"summary", entry.summary}});
+      continue;
+    }
+    if (wanted.empty()) fmt::print("{}:\n", kind.plural);
+    for (const Entry& entry : entries)
+      fmt::print("{}{:<30} {}\n", wanted.empty() ? "  " : "", entry.name, entry.summary);
+  }
+  if (!any) {
+    std::vector<Entry> known;
+    for (const Kind& kind : kinds()) known.push_back({kind.plural, ""});
+    unknown("list", wanted, known);
+  }
+  if (common.json) fmt::print("{}\n", json.dump(1));
+  return 0;
+}
+
+int describe_command(const DescribeArguments& arguments, const CommonArguments&) {
+  for (const Kind& kind : kinds()) {
+    if (arguments.kind != kind.singular && arguments.kind != kind.plural) continue;
+    fmt::print("{}", kind.describe(arguments.name));
+    if (!arguments.picture.empty()) draw_picture({kind.singular, arguments.name, arguments.picture});
+    return 0;
+  }
+  std::vector<Entry> known;
+  for (const Kind& kind : kinds()) known.push_back({kind.singular, ""});
+  unknown("describe", arguments.kind, known);
+}
+
+}  // namespace tarmac::tools

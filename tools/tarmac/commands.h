@@ -1,0 +1,70 @@
+/// The program's commands. Each returns an exit code (0 success, 3 some runs failed) and throws InputError (2).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tarmac::tools {
+
+struct CommonArguments {
+  bool quiet = false;
+  bool json = false;
+  int jobs = 0;                    ///< threads; 0 = all cores
+  std::vector<std::string> words;  ///< the command line as given, for provenance
+  int threads() const;
+};
+
+struct ScenarioArguments {
+  std::string scenario;
+  std::string out;
+  std::string seeds;  ///< "" = the scenario's own
+  std::vector<std::string> sets;
+  std::string config;  ///< file with an `estimators:` block
+  std::string estimators = "all";
+  std::string diagnostics = "system";
+  bool fast = false;
+};
+int run_command(const ScenarioArguments& arguments, const CommonArguments& common);
+int simulate_command(const ScenarioArguments& arguments, const CommonArguments& common);
+
+struct EstimateArguments {
+  std::string recording;  ///< a run's folder, a recording folder, or a plain folder
+  std::string out;
+  std::string estimators = "all";
+  std::string config;
+  std::vector<std::string> sets;  ///< "kiss-icp.voxel_size_m=0.5"
+  std::string diagnostics = "system";
+};
+int estimate_command(const EstimateArguments& arguments, const CommonArguments& common);
+
+struct EvaluateArguments {
+  std::vector<std::string> folders;
+  std::string truth, estimate;  ///< the other form: two trajectory files
+  std::string align = "se3";
+};
+int evaluate_command(const EvaluateArguments& arguments, const CommonArguments& common);
+
+struct ReportArguments {
+  std::vector<std::string> folders;
+  std::string out;
+};
+int report_command(const ReportArguments& arguments, const CommonArguments& common);
+
+int list_command(const std::string& kind, const CommonArguments& common);
+struct DescribeArguments {
+  std::string kind, name, picture;
+};
+int describe_command(const DescribeArguments& arguments, const CommonArguments& common);
+
+struct TransferArguments {
+  std::string format;  ///< plain | kitti | tum
+  std::string from, to;
+  std::string estimator;  ///< export tum: which; "" = truth
+};
+int import_command(const TransferArguments& arguments, const CommonArguments& common);
+int export_command(const TransferArguments& arguments, const CommonArguments& common);
+
+}  // namespace tarmac::tools

@@ -1,0 +1,160 @@
+// The `tarmac` program: its command line. What the commands do is in the files named after them.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "core/error.h"
+#include "tools/tarmac/build_info.h"
+#include "tools/tarmac/commands.h"
+#include "tools/tarmac/interrupt.h"
+
+namespace tarmac::tools {
+namespace {
+
+constexpr int kBadUsage = 2, kInternalError = 4, kInterruptedExit = 130;
+
+struct Arguments {
+  CommonArguments common;
+  ScenarioArguments scenario;
+  EstimateArguments estimate;
+  EvaluateArguments evaluate;
+  ReportArguments report;
+  DescribeArguments describe;
+  TransferArguments transfer;
+  std::string list_kind;
+  std::function<int()> chosen;
+};
+
+CLI::App* add(CLI::App& app, Arguments& a, const char* name, const char* what, std::function<int()> action) {
+  CLI::App* command = app.add_subcommand(name, what);
+  command->add_flag("-q,--quiet", a.common.quiet, "say nothing but results and errors");
+  command->add_flag("--json", a.common.json, "print results as JSON rows");
+  command->callback([&a, action = std::move(action)] { a.chosen = action; });
+  return command;
+}
+
+void add_jobs(CLI::App* command, Arguments& a) {
+  command
+      ->add_option("--jobs", a.common.jobs,
+                   "threads inside the simulator and inside each estimator (default: all cores)")
+      ->check(CLI::Range(1, 1024));
+}
+
+void add_scenario_options(CLI::App* command, Arguments& a, bool needs_out) {
+  command->add_option("scenario", a.scenario.scenario, "scenario file, or its name")->required();
+  auto* out = command->add_option("-o,--out", a.scenario.out, "folder for the results");
+  if (needs_out) out->required();
+  command->add_option("--seed", a.scenario.seeds, "one seed, or a range such as 1..5 (results in DIR/seed-N)");
+  command->add_option("--set", a.scenario.sets, "override a field: motion.cruise_m_s=5 (repeatable)")
+      ->allow_extra_args(false);
+  command->add_flag("--fast", a.scenario.fast, "lift the pinned instruction set of the ray tracer");
+  add_jobs(command, a);
+}
+
+void add_estimator_options(CLI::App* command, std::string& estimators, std::string& config, std::string& diagnostics) {
+  command->add_option("-e,--estimators", estimators, "names separated by commas, or all (the default)");
+  command->add_option("--config", config, "YAML file with an `estimators:` block");
+  command->add_option("--diagnostics", diagnostics, "what is recorded per sweep: none, system (default) or full")
+      ->check(CLI::IsMember({"none", "system", "full"}));
+}
+
+void add_commands(CLI::App& app, Arguments& a) {
+  CLI::App* run = add(app, a, "run", "simulate a scenario, run estimators, evaluate them and write the report",
+                      [&a] { return run_command(a.scenario, a.common); });
+  add_scenario_options(run, a, false);
+  add_estimator_options(run, a.scenario.estimators, a.scenario.config, a.scenario.diagnostics);
+
+  CLI::App* simulate = add(app, a, "simulate", "make a recording, with the truth beside it",
+                           [&a] { return simulate_command(a.scenario, a.common); });
+  add_scenario_options(simulate, a, true);
+
+  CLI::App* estimate = add(app, a, "estimate", "run estimators on a recording (or a plain folder)",
+                           [&a] { return estimate_command(a.estimate, a.common); });
+  estimate->add_option("recording", a.estimate.recording, "folder of a run, a recording, or the plain format")
+      ->required();
+  estimate->add_option("-o,--out", a.estimate.out, "folder for the results")->required();
+  estimate->add_option("--set", a.estimate.sets, "override an option: kiss-icp.voxel_size_m=0.5 (repeatable)")
+      ->allow_extra_args(false);
+  add_estimator_options(estimate, a.estimate.estimators, a.estimate.config, a.estimate.diagnostics);
+  add_jobs(estimate, a);
+
+  CLI::App* evaluate = add(app, a, "evaluate", "score estimates against the truth",
+                           [&a] { return evaluate_command(a.evaluate, a.common); });
+  evaluate->add_option("folders", a.evaluate.folders, "folders of runs");
+  evaluate->add_option("--truth", a.evaluate.truth, "true trajectory (TUM, KITTI or EuRoC)");
+  evaluate->add_option("--estimate", a.evaluate.estimate, "estimated trajectory (TUM, KITTI or EuRoC)");
+  evaluate
+      ->add_option("--align", a.evaluate.align,
+                   "alignment of the headline: none, first-pose, yaw-pos, se3 (default) or sim3")
+      ->check(CLI::IsMember({"none", "first-pose", "yaw-pos", "se3", "sim3"}));
+  add_jobs(evaluate, a);
+
+  CLI::App* report = add(app, a, "report", "write the HTML page of one or several runs",
+                         [&a] { return report_command(a.report, a.common); });
+  report->add_option("folders", a.report.folders, "folders of runs")->required();
+  report->add_option("-o,--out", a.report.out, "the page to write")->required();
+
+  CLI::App* list = add(app, a, "list", "what there is", [&a] { return list_command(a.list_kind, a.common); });
+  list->add_option("kind", a.list_kind,
+                   "scenarios, scenes, motions, sensors, imus, estimators or metrics (default: all)");
+
+  CLI::App* describe = add(app, a, "describe", "one thing in full: options, defaults, ranges, sources",
+                           [&a] { return describe_command(a.describe, a.common); });
+  describe->add_option("kind", a.describe.kind, "scenario, scene, motion, sensor, imu, estimator or metric")
+      ->required();
+  describe->add_option("name", a.describe.name, "its name")->required();
+  describe->add_option("-o,--out", a.describe.picture, "write a picture (scene and scenario)");
+
+  for (const bool importing : {true, false}) {
+    CLI::App* transfer = importing ? add(app, a, "import", "make a recording (or a TUM file) from another format",
+                                         [&a] { return import_command(a.transfer, a.common); })
+                                   : add(app, a, "export", "write a recording or a trajectory in another format",
+                                         [&a] { return export_command(a.transfer, a.common); });
+    transfer->add_option("--format", a.transfer.format, "plain, kitti or tum")
+        ->required()
+        ->check(CLI::IsMember({"plain", "kitti", "tum"}));
+    transfer->add_option("from", a.transfer.from, importing ? "what to read" : "folder of a run or a recording")
+        ->required();
+    transfer->add_option("-o,--out", a.transfer.to, "what to write")->required();
+    if (!importing)
+      transfer->add_option("-e,--estimator", a.transfer.estimator, "whose trajectory (default: the truth's)");
+  }
+}
+
+int run_main(int argc, char** argv) {
+  Arguments a;
+  a.common.words.assign(argv, argv + argc);
+  CLI::App app("Tarmac: a testbench for continuous-time LiDAR registration");
+  app.require_subcommand(1);
+  const BuildInfo build = build_info();
+  app.set_version_flag("--version", fmt::format("tarmac {} ({}, {}, {})", build.version, build.commit, build.compiler,
+                                                build.build_type));
+  add_commands(app, a);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : kBadUsage;
+  }
+  install_interrupt_handler();
+  try {
+    return a.chosen();
+  } catch (const Interrupted&) {
+    fmt::print(stderr, "\ninterrupted: what was finished is kept, the rest is left unfinished and will be refused\n");
+    return kInterruptedExit;
+  } catch (const core::InputError& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return kBadUsage;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "internal error: {}\n", error.what());
+    return kInternalError;
+  }
+}
+
+}  // namespace
+}  // namespace tarmac::tools
+
+int main(int argc, char** argv) {
+  return tarmac::tools::run_main(argc, argv);
+}

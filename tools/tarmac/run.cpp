@@ -1,0 +1,146 @@
+// `tarmac run` and `tarmac simulate`: from a scenario file to a recording, estimates, scores and a page.
+#include <fmt/format.h>
+
+#include <thread>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "tools/tarmac/commands.h"
+#include "tools/tarmac/evaluation_run.h"
+#include "tools/tarmac/layout.h"
+#include "tools/tarmac/provenance.h"
+#include "tools/tarmac/results_table.h"
+#include "tools/tarmac/world.h"
+#include "tools/tarmac/write_page.h"
+
+namespace tarmac::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Everything that the command line asks for, checked before anything is written.
+struct Plan {
+  scenarios::Scenario scenario;
+  std::vector<EstimatorRequest> estimators;
+  std::vector<std::uint64_t> seeds;
+  bool seed_folders = false;  ///< a range was asked for: results in DIR/seed-N
+  fs::path out;
+
+  RunFolder folder(std::uint64_t seed) const {
+    return RunFolder{seed_folders ? out / fmt::format("seed-{}", seed) : out};
+  }
+};
+
+std::vector<core::ConfigNode> estimator_blocks(const scenarios::Scenario& scenario, const std::string& config) {
+  std::vector<core::ConfigNode> blocks;
+  if (!config.empty()) {
+    const core::ConfigNode file = core::ConfigNode::load(config);
+    file.allow_only({"estimators"});
+    blocks.push_back(file.child("estimators"));
+  }
+  blocks.push_back(scenario.estimators);
+  return blocks;
+}
+
+Plan make_plan(const ScenarioArguments& arguments, bool with_estimators) {
+  Plan plan;
+  std::vector<scenarios::Override> overrides;
+  for (const std::string& set : arguments.sets) overrides.push_back(scenarios::parse_override(set));
+  const fs::path file = scenarios::find_scenario(arguments.scenario, scenario_folders());
+  plan.scenario = scenarios::load_scenario(file, overrides);
+  check_world(plan.scenario);
+  if (with_estimators) {
+    plan.estimators = request_estimators(arguments.estimators, estimator_blocks(plan.scenario, arguments.config));
+  }
+  plan.seeds = {static_cast<std::uint64_t>(plan.scenario.seed)};
+  if (!arguments.seeds.empty()) plan.seeds = scenarios::parse_seeds(arguments.seeds);
+  plan.seed_folders = arguments.seeds.find("..") != std::string::npos;
+  plan.out = arguments.out.empty() ? fs::path("out") / plan.scenario.name : fs::path(arguments.out);
+  return plan;
+}
+
+/// Simulates one seed into its folder. Until provenance.json stands there again, the folder is no finished run.
+Provenance simulate_seed(const Plan& plan, std::uint64_t seed, const ScenarioArguments& arguments,
+                         const CommonArguments& common, const Console& console) {
+  const RunFolder run = plan.folder(seed);
+  fs::create_directories(run.root);
+  fs::remove(run.provenance());
+  fs::remove(run.report());
+  for (const fs::path& folder : estimator_folders(run)) fs::remove_all(folder);
+  const std::string resolved = resolve_scenario(plan.scenario, seed, plan.estimators);
+  core::write_file(run.scenario(), resolved);
+  const sim::SimulationInput input = build_world(plan.scenario, seed, resolved);
+  const sim::SimulationSummary summary =
+      sim::simulate(input, {.threads = common.threads(), .fast = arguments.fast}, run.recording(), run.truth(),
+                    console.progress(plan.seed_folders ? fmt::format("simulate {}", seed) : "simulate"));
+  Provenance provenance;
+  provenance.scenario = plan.scenario.name;
+  provenance.seed = seed;
+  provenance.scenario_hash = core::hash_hex(resolved);
+  provenance.recording_hash = summary.recording_hash;
+  provenance.recording = "recording";
+  provenance.truth = "truth";
+  provenance.command = shell_command(common.words);
+  provenance.isa = summary.isa;
+  provenance.threads = common.threads();
+  provenance.simulate_wall_s = summary.wall_s;
+  provenance.simulate_real_time_factor = summary.real_time_factor;
+  provenance.simulate_mrays_per_s = summary.wall_s > 0 ? 1e-6 * static_cast<double>(summary.rays) / summary.wall_s : 0;
+  for (const EstimatorRequest& request : plan.estimators) {
+    provenance.options += fmt::format("{}:\n{}", request.name, resolved_options(request));
+  }
+  console.say(fmt::format("recording {}: {} sweeps, {:.1f} M points, {} IMU samples, {:.1f} Mrays/s, {:.1f}x real time",
+                          summary.recording_hash, summary.sweeps, 1e-6 * static_cast<double>(summary.points),
+                          summary.imu_samples, provenance.simulate_mrays_per_s, summary.real_time_factor));
+  return provenance;
+}
+
+}  // namespace
+
+int CommonArguments::threads() const {
+  return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+int run_command(const ScenarioArguments& arguments, const CommonArguments& common) {
+  const Console console(common.quiet);
+  const Plan plan = make_plan(arguments, true);
+  bool failed = false;
+  std::vector<RunFolder> runs;
+  std::vector<metrics::Evaluation> evaluations;
+  for (const std::uint64_t seed : plan.seeds) {
+    const RunFolder run = plan.folder(seed);
+    const Provenance provenance = simulate_seed(plan, seed, arguments, common, console);
+    const auto outcomes =
+        run_estimators(plan.estimators, run.recording(), run.root, {common.threads(), arguments.diagnostics}, console);
+    for (const Outcome& outcome : outcomes) failed = failed || outcome.failed();
+    save_provenance(run.provenance(), provenance);
+    for (metrics::Evaluation& evaluation : evaluate_run(run, common.threads(), console)) {
+      evaluations.push_back(std::move(evaluation));
+    }
+    runs.push_back(run);
+  }
+  const fs::path page = plan.out / "report.html";
+  write_page(runs, page, console);
+  link_latest(plan.out);
+  print_results(evaluations, common.json);
+  console.say(fmt::format("report: {}", page.string()));
+  return failed ? 3 : 0;
+}
+
+int simulate_command(const ScenarioArguments& arguments, const CommonArguments& common) {
+  const Console console(common.quiet);
+  const Plan plan = make_plan(arguments, false);
+  for (const std::uint64_t seed : plan.seeds) {
+    const Provenance provenance = simulate_seed(plan, seed, arguments, common, console);
+    save_provenance(plan.folder(seed).provenance(), provenance);
+    if (common.json) {
+      fmt::print("{}", core::read_file(plan.folder(seed).provenance()));
+    } else {
+      fmt::print("{} {}\n", provenance.recording_hash, plan.folder(seed).recording().string());
+    }
+  }
+  link_latest(plan.out);
+  return 0;
+}
+
+}  // namespace tarmac::tools

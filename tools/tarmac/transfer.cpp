@@ -1,0 +1,78 @@
+// `tarmac import` and `tarmac export`.
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/estimate.h"
+#include "core/recording.h"
+#include "io/sensor/plain.h"
+#include "io/sensor/tum.h"
+#include "tools/tarmac/commands.h"
+#include "tools/tarmac/console.h"
+#include "tools/tarmac/layout.h"
+
+namespace tarmac::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path recording_of(const fs::path& from) {
+  if (fs::is_regular_file(from / "manifest.json")) return from;
+  if (fs::is_directory(from / "recording")) return from / "recording";
+  throw core::InputError(
+      fmt::format("{}: is no recording and no folder of a run (no manifest.json, no recording/)", from.string()));
+}
+
+/// The trajectory that `export` writes: an estimator's reference poses, or the truth.
+fs::path trajectory_of(const TransferArguments& arguments) {
+  const fs::path from = arguments.from;
+  if (fs::is_regular_file(from)) return from;
+  const fs::path file =
+      arguments.estimator.empty() ? from / "truth" / "truth.tum" : from / arguments.estimator / "trajectory.tum";
+  if (!fs::is_regular_file(file)) {
+    throw core::InputError(
+        fmt::format("{}: there is no such trajectory; expected the folder of a run{}", file.string(),
+                    arguments.estimator.empty() ? " with truth, or -e with an estimator's name" : ""));
+  }
+  return file;
+}
+
+}  // namespace
+
+int import_command(const TransferArguments& arguments, const CommonArguments& common) {
+  const Console console(common.quiet);
+  if (arguments.format == "tum") {
+    io::write_tum(arguments.to, io::read_trajectory(arguments.from));
+    fmt::print("{}\n", arguments.to);
+    return 0;
+  }
+  const auto import = arguments.format == "kitti" ? io::import_kitti : io::import_plain;
+  const std::string hash = import(arguments.from, arguments.to, console.progress("import"));
+  fmt::print("{} {}\n", hash, arguments.to);
+  return 0;
+}
+
+int export_command(const TransferArguments& arguments, const CommonArguments& common) {
+  const Console console(common.quiet);
+  if (arguments.format == "tum") {
+    io::write_tum(arguments.to, io::read_trajectory(trajectory_of(arguments)));
+    fmt::print("{}\n", arguments.to);
+    return 0;
+  }
+  const core::Recording recording = core::Recording::open(recording_of(arguments.from));
+  if (arguments.format == "plain") {
+    io::export_plain(recording, arguments.to, console.progress("export"));
+  } else {
+    io::export_kitti(recording, arguments.to, console.progress("export"));
+    const fs::path estimate_file = fs::path(arguments.from) / arguments.estimator / "trajectory.bin";
+    if (!arguments.estimator.empty()) {
+      std::vector<io::StampedPose> poses;
+      for (const core::SweepResult& sweep : core::load_estimate(estimate_file).sweeps)
+        poses.push_back({sweep.reference, sweep.T_map_body});
+      io::write_kitti_poses(fs::path(arguments.to) / "poses.txt", poses);
+    }
+  }
+  fmt::print("{}\n", arguments.to);
+  return 0;
+}
+
+}  // namespace tarmac::tools
