@@ -103,11 +103,13 @@ void add_cab(MeshBuilder& b, const AircraftType& type, const core::SE3& T_world_
   add_frustum(b, {0, pivot, top}, {0, pivot, top + 0.25}, 1.95, 1.80, 40);
   b.use(bellows);
   for (const double x : {-cab_half_m + 0.06, cab_half_m - 0.06}) add_canopy_side(b, type, x, wall_from + 0.05);
-  const double roof_skin = fuselage_half_width_m(type, door.x_m, type.floor_z_m + 2.32) + 0.10;
   std::vector<Ring> roof;
-  for (const double x : {-cab_half_m, cab_half_m}) {
-    roof.push_back(
-        {{x, roof_skin, 2.30}, {x, wall_from + 0.05, 2.55}, {x, wall_from + 0.05, 2.68}, {x, roof_skin, 2.42}});
+  constexpr int n = 8;
+  for (int k = 0; k <= n; ++k) {
+    const double x = cab_half_m * (2.0 * k / n - 1), margin = 0.04;
+    const double low = fuselage_half_width_m(type, door.x_m - x, type.floor_z_m + 2.25) + margin;
+    const double high = fuselage_half_width_m(type, door.x_m - x, type.floor_z_m + 2.38) + margin;
+    roof.push_back({{x, low, 2.28}, {x, wall_from + 0.05, 2.55}, {x, wall_from + 0.05, 2.68}, {x, high, 2.40}});
   }
   add_loft(b, roof);
   b.at(core::SE3::Identity());
