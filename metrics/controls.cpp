@@ -52,10 +52,14 @@ std::vector<Time> sample_times(const LidarSweep& sweep) {
   for (std::size_t i = 0; i < sweep.size(); ++i)
     if (sweep.time(i) > sweep.begin && sweep.time(i) < sweep.end) stamps.push_back(sweep.time(i));
   std::sort(stamps.begin(), stamps.end());
+  stamps.push_back(sweep.end);
   std::vector<Time> times{sweep.begin};
-  for (const Time t : stamps)
-    if (t - times.back() >= kClosestSamples) times.push_back(t);
-  if (sweep.end > times.back()) times.push_back(sweep.end);
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i] - times.back() < kClosestSamples && i + 1 < stamps.size()) continue;
+    // The last one of a burst too: it must not lie on the long way to the next burst.
+    if (stamps[i - 1] > times.back()) times.push_back(stamps[i - 1]);
+    if (stamps[i] > times.back()) times.push_back(stamps[i]);
+  }
   return times;
 }
 

@@ -22,8 +22,8 @@ struct KnownError {
 };
 
 /// `truth-replay` when `error` is the default, `truth-with-known-error` else. Reference instant: sweep end. Each sweep
-/// is a segment of poses at its points' stamps (those within 100 us of the one before left out), with a constant twist
-/// between: exact at the stamps, else off by at most acceleration x (100 us)^2 / 8. A sweep that the truth does not
+/// is a segment of poses at its points' stamps (of bursts closer than 100 us the first and the last), with a constant twist
+/// between: exact at these, and off by at most acceleration x (100 us)^2 / 8 at the others. A sweep that the truth does not
 /// cover is `lost`. Throws InputError when a shift leads out of the truth's span.
 core::Estimate make_control(const sim::truth::GroundTruth& truth, const SweepSource& sweeps,
                             const KnownError& error = {});
