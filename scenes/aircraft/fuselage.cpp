@@ -220,7 +220,7 @@ MaterialId skin(const AircraftType& type, double x_m, Line line, int side) {
     if (off < w.width_m / 2) return MaterialId::acrylic_cabin_window;
   }
   if (x_m > type.length_m - 0.32) return MaterialId::exhaust_metal;
-  return line < hold_low ? MaterialId::aircraft_grey : MaterialId::aircraft_white_topcoat;
+  return MaterialId::aircraft_white_topcoat;
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ double SlabSurface::height_m(int i, int j, double x_m, double y_m) const {
 }
 
 StandRelief::StandRelief(const StandOptions& options, std::uint64_t seed)
-    : grid_(options), joint_depth_m_(options.joint_depth_mm * 1e-3) {
+    : grid_(options), slabs_per_m_(1 / grid_.size_m), joint_depth_m_(options.joint_depth_mm * 1e-3) {
   const core::RandomStream random(seed, "scenes/stand/relief");
   for (std::size_t k = 0; k < lattice_.size(); ++k) lattice_[k] = static_cast<float>(random.normal(k));
   // Quintic interpolation of independent values has standard deviation 2*181/462 of theirs (square of the integral of
@@ -128,7 +128,7 @@ double StandRelief::add_octave(const Octave& o, double x_m, double y_m, Eigen::V
 }
 
 double StandRelief::groove_m(double across_m, double along_m, double& d_across, double& d_along) const {
-  const double cell = static_cast<double>(floor_to_int(across_m / grid_.size_m + 0.5));
+  const double cell = static_cast<double>(floor_to_int(across_m * slabs_per_m_ + 0.5));
   const double d = across_m - cell * grid_.size_m;
   const double w = grid_.joint_width_m / 2;
   d_across = d_along = 0;
