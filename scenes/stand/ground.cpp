@@ -13,6 +13,12 @@ namespace {
 
 constexpr double tau = 2 * std::numbers::pi;
 
+/// Without the call that std::floor costs on a processor that is not known to round in one instruction.
+inline std::int64_t floor_to_int(double x) {
+  const auto truncated = static_cast<std::int64_t>(x);
+  return truncated - (x < static_cast<double>(truncated) ? 1 : 0);
+}
+
 }  // namespace
 
 StandGround::StandGround(const StandOptions& options, std::uint64_t seed)
@@ -84,7 +90,7 @@ double SlabSurface::height_m(int i, int j, double x_m, double y_m) const {
 }
 
 StandRelief::StandRelief(const StandOptions& options, std::uint64_t seed)
-    : grid_(options), joint_depth_m_(options.joint_depth_mm * 1e-3) {
+    : grid_(options), slabs_per_m_(1 / grid_.size_m), joint_depth_m_(options.joint_depth_mm * 1e-3) {
   const core::RandomStream random(seed, "scenes/stand/relief");
   for (std::size_t k = 0; k < lattice_.size(); ++k) lattice_[k] = static_cast<float>(random.normal(k));
   // Quintic interpolation of independent values has standard deviation 2*181/462 of theirs (square of the integral of
@@ -104,9 +110,8 @@ StandRelief::StandRelief(const StandOptions& options, std::uint64_t seed)
 double StandRelief::add_octave(const Octave& o, double x_m, double y_m, Eigen::Vector2d& gradient) const {
   const double u = o.cos_per_m * x_m + o.sin_per_m * y_m + o.shift_u;
   const double v = o.cos_per_m * y_m - o.sin_per_m * x_m + o.shift_v;
-  const double u0 = std::floor(u), v0 = std::floor(v);
-  const double s = u - u0, t = v - v0;
-  const auto i = static_cast<std::int64_t>(u0), j = static_cast<std::int64_t>(v0);
+  const std::int64_t i = floor_to_int(u), j = floor_to_int(v);
+  const double s = u - static_cast<double>(i), t = v - static_cast<double>(j);
   constexpr std::int64_t mask = lattice_size - 1;
   const auto value = [&](std::int64_t a, std::int64_t b) -> double {
     return lattice_[static_cast<std::size_t>(((b & mask) << lattice_bits) | (a & mask))];
@@ -123,7 +128,7 @@ double StandRelief::add_octave(const Octave& o, double x_m, double y_m, Eigen::V
 }
 
 double StandRelief::groove_m(double across_m, double along_m, double& d_across, double& d_along) const {
-  const double cell = std::round(across_m / grid_.size_m);
+  const double cell = static_cast<double>(floor_to_int(across_m * slabs_per_m_ + 0.5));
   const double d = across_m - cell * grid_.size_m;
   const double w = grid_.joint_width_m / 2;
   d_across = d_along = 0;
