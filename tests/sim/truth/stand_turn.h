@@ -13,25 +13,24 @@ kind: drive
 start: {x_m: -60, y_m: -30, heading_deg: 0}
 rest_s: 3
 path:
-  - {straight_m: 78.5}
+  - {straight_m: 78.2}
   - {turn_deg: 90, radius_m: 5.5, blend_m: 4.5}
-  - {straight_m: 50.7}
-  - {turn_deg: 90, radius_m: 7, blend_m: 5}
-  - {straight_m: 37.2}
-  - {turn_deg: 90, radius_m: 7, blend_m: 5}
-  - {straight_m: 48.7}
-  - {turn_deg: 90, radius_m: 7, blend_m: 5}
-  - {straight_m: 8}
+  - {straight_m: 51.9}
+  - {turn_deg: 90, radius_m: 6, blend_m: 4.5}
+  - {straight_m: 39.4}
+  - {turn_deg: 90, radius_m: 6, blend_m: 4.5}
+  - {straight_m: 51.4}
+  - {turn_deg: 90, radius_m: 6, blend_m: 4.5}
+  - {straight_m: 6}
 speed:
   - {to_m_s: 7, peak_m_s2: 1.8}
   - {at_m: 69, to_m_s: 2.5, peak_m_s2: 5.5}
-  - {at_m: 92, to_m_s: 6.5, peak_m_s2: 1.8}
-  - {by_m: 140, to_m_s: 3.2, peak_m_s2: 1.8}
-  - {at_m: 155.5, to_m_s: 6.8, peak_m_s2: 1.8}
-  - {by_m: 192, to_m_s: 3.2, peak_m_s2: 2.2}
-  - {at_m: 206, to_m_s: 7, peak_m_s2: 1.8}
-  - {by_m: 253, to_m_s: 3.2, peak_m_s2: 1.8}
-  - {at_m: 268, to_m_s: 4, peak_m_s2: 1.2}
+  - {at_m: 91, to_m_s: 6.8, peak_m_s2: 1.8}
+  - {by_m: 142, to_m_s: 3, peak_m_s2: 1.8}
+  - {at_m: 156, to_m_s: 6.8, peak_m_s2: 1.8}
+  - {by_m: 195.5, to_m_s: 3, peak_m_s2: 2.2}
+  - {at_m: 209.5, to_m_s: 7, peak_m_s2: 1.8}
+  - {by_m: 261, to_m_s: 3, peak_m_s2: 1.8}
 stop_peak_m_s2: 2
 )";
 
