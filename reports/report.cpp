@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -15,40 +16,39 @@ namespace tarmac::reports {
 namespace {
 
 constexpr int kOverviewWidth_px = 1600, kOverviewHeight_px = 860;
-constexpr int kTopWidth_px = 2000, kTopMaxHeight_px = 1800;
-constexpr double kTopAspect = 1.5;
+constexpr int kTopWidth_px = 2000;
+constexpr double kNarrowestFrame = 1 / 0.6, kWidestFrame = 1 / 0.45;  ///< width over height, as in topview.js
 constexpr int kMapWidth_px = 1200, kMapHeight_px = 700;
 constexpr int kJpegQuality_percent = 84;
-constexpr double kPathMargin_m = 8;
+constexpr double kPathMargin = 0.1;  ///< of the path's longer side, as in topview.js
 
 Picture jpeg(const Image& image) {
   return {"image/jpeg", to_jpeg(image, kJpegQuality_percent), image.width_px, image.height_px};
 }
 
-/// The scene's own rectangle, grown to hold the true path. Estimated paths may leave it: the reader can pan.
+/// The scene's own rectangle, grown to hold the true path with room around it and to the shape of the page's frame, so
+/// that the picture fills it. Estimated paths may leave it: the reader can pan.
 TopView view_of(const ReportInput& input) {
-  Eigen::Vector2d min_m = input.scene->interest_min, max_m = input.scene->interest_max;
+  Eigen::AlignedBox2d path;
   for (const auto& run : input.runs) {
     for (const auto& evaluation : run.evaluations) {
-      const metrics::Series* const path = evaluation.find("path_true");
-      if (!path) continue;
-      for (std::size_t i = 0; i < std::min(path->x.size(), path->y.size()); ++i) {
-        if (!std::isfinite(path->x[i]) || !std::isfinite(path->y[i])) continue;
-        const Eigen::Vector2d p(path->x[i], path->y[i]);
-        min_m = min_m.cwiseMin((p.array() - kPathMargin_m).matrix());
-        max_m = max_m.cwiseMax((p.array() + kPathMargin_m).matrix());
+      const metrics::Series* const series = evaluation.find("path_true");
+      for (std::size_t i = 0; series && i < std::min(series->x.size(), series->y.size()); ++i) {
+        if (std::isfinite(series->x[i]) && std::isfinite(series->y[i])) {
+          path.extend(Eigen::Vector2d(series->x[i], series->y[i]));
+        }
       }
     }
   }
-  // A wide page looks best filled.
-  const double wanted_m = kTopAspect * (max_m.y() - min_m.y()), missing_m = wanted_m - (max_m.x() - min_m.x());
-  if (missing_m > 0) {
-    min_m.x() -= 0.5 * missing_m;
-    max_m.x() += 0.5 * missing_m;
+  Eigen::AlignedBox2d shown(input.scene->interest_min, input.scene->interest_max);
+  if (!path.isEmpty()) {
+    const Eigen::Vector2d margin = Eigen::Vector2d::Constant(kPathMargin * std::max(10.0, path.sizes().maxCoeff()));
+    shown.extend(path.min() - margin).extend(path.max() + margin);
   }
-  const Eigen::Vector2d size_m = max_m - min_m;
-  const double width_px = std::min<double>(kTopWidth_px, kTopMaxHeight_px * size_m.x() / size_m.y());
-  return top_view(min_m, max_m, static_cast<int>(width_px));
+  const double missing_x_m = kNarrowestFrame * shown.sizes().y() - shown.sizes().x();
+  const double missing_y_m = shown.sizes().x() / kWidestFrame - shown.sizes().y();
+  const Eigen::Vector2d grow(std::max(0.0, 0.5 * missing_x_m), std::max(0.0, 0.5 * missing_y_m));
+  return top_view(shown.min() - grow, shown.max() + grow, kTopWidth_px);
 }
 
 /// Maps of the first run only: pictures are large, and seeds differ in noise.

@@ -19,8 +19,9 @@ export function formatTick(value, step) {
   if (value === 0) return "0";
   const size = Math.abs(value);
   if (size < 1e-4 || size >= 1e5) return formatNumber(value, 1);
-  const decimals = step > 0 ? Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)) : 3;
-  return minus(value.toFixed(Math.min(decimals, 6)));
+  let decimals = 0;  // 0.25 needs two of them, though it is above 0.1
+  while (decimals < 6 && Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 1e-6 * step * 10 ** decimals) ++decimals;
+  return minus(value.toFixed(decimals));
 }
 
 /** Ticks of a logarithmic axis: 1, 2, 5 over few decades, powers of ten over many. */

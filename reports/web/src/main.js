@@ -48,7 +48,7 @@ function figures() {
   state.listen(() => top.draw());
   section("top", "On the stand",
     figure("True and estimated paths from above",
-      "The white line is where the vehicle really went; a coloured line beside it is a method's belief, and the gap between them is its error at that place (laid onto the truth at its first pose).",
+      "The broad line is where the vehicle really went, a thin coloured one where a method believes it went; the gap between them is the error at that place, after the method's path was laid onto the truth at its first pose.",
       top.element));
   section("stills", "In the picture", pictureNote(state),
     overview(state) && figure("The scene", "This is what the sensor drove through, at the instant that the moving things are drawn at.", overview(state)),

@@ -8,9 +8,23 @@ export function pictureNote(state) {
   return note ? el("p", { class: "note", role: "note" }, note) : null;
 }
 
+function image(picture, alt) {
+  return el("img", { class: "still", src: picture.src, width: picture.width_px, height: picture.height_px, alt });
+}
+
+/** A small picture that fills the window when asked to. */
+function enlargeable(picture, alt) {
+  return el("button", { type: "button", class: "enlarge", "aria-label": `${alt}: enlarge`, onclick: () => {
+    const dialog = el("dialog", { "aria-label": alt, onclick: () => dialog.close(), onclose: () => dialog.remove() }, image(picture, alt),
+      el("button", { type: "button", class: "close" }, "Close"));
+    document.body.append(dialog);
+    dialog.showModal();
+  } }, image(picture, alt));
+}
+
 export function overview(state) {
   const picture = state.data.pictures.overview;
-  return picture ? el("img", { class: "still", src: picture.src, width: picture.width_px, height: picture.height_px, alt: "The scene seen from the south-west" }) : null;
+  return picture ? image(picture, "The scene seen from the south-west") : null;
 }
 
 /** Colours with their errors in centimetres, logarithmic between the ends. */
@@ -41,10 +55,10 @@ export function mapGallery(state) {
   const tiles = maps.map((map) => el("div", { class: "map-tile", "data-estimator": map.estimator },
     el("div", { class: "map-title" }, el("i", { class: "dot", style: { background: `var(${state.color(map.estimator)})` } }), map.estimator,
       state.data.seeds.length > 1 ? el("span", { class: "muted" }, `seed ${map.seed}`) : null),
-    el("img", { class: "still", src: map.src, width: map.width_px, height: map.height_px, alt: `Map of ${map.estimator}, points coloured by error` })));
+    enlargeable(map, `Map of ${map.estimator}, points coloured by error`)));
   const update = () => tiles.forEach((tile) => { tile.hidden = !state.isVisible(tile.dataset.estimator); });
   state.listen(update);
   return figure("Maps coloured by error",
     "Every dot is a static point where the method put it, coloured by how far that is from the point's true place on one logarithmic scale for all pictures; points on moving things are left out.",
-    colorBar(scale), el("div", { class: `gallery${maps.length === 1 ? " one" : ""}` }, ...tiles));
+    colorBar(scale), el("div", { class: `gallery n${maps.length === 1 ? 1 : maps.length === 2 || maps.length === 4 ? 2 : 3}` }, ...tiles));
 }

@@ -167,7 +167,8 @@ export class Chart {
       return el("span", { class: "value" }, el("i", { class: "dot", style: { background: `var(${line.color})` } }),
         el("span", { class: "sr" }, `${line.name} `), formatNumber(y));
     });
-    this.readout.replaceChildren(el("span", { class: "at" }, `${formatNumber(x)}${xUnit ? ` ${xUnit}` : ""}`), ...values);
+    this.readout.replaceChildren(el("span", { class: "at" }, `${formatNumber(x)}${xUnit ? ` ${xUnit}` : ""}`), ...values,
+      el("span", { class: "axis-name" }, yUnit));
   }
 
   zoom(span) {

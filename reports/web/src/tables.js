@@ -61,7 +61,7 @@ function sortButton(label, unit, tip, current, onclick) {
   const arrow = current === null ? "" : current ? " ▲" : " ▼";
   return el("th", { scope: "col", "aria-sort": current === null ? "none" : current ? "ascending" : "descending" },
     el("button", { type: "button", class: "sort", "data-tip": tip || null, onclick }, el("span", {}, label, el("span", { class: "arrow" }, arrow)),
-      el("span", { class: "unit" }, unit || "\u00a0")));
+      unit === undefined ? null : el("span", { class: "unit" }, unit || "\u00a0")));
 }
 
 export class SummaryTable {
@@ -112,7 +112,7 @@ export class SummaryTable {
         if (!this.open.delete(row.name)) this.open.add(row.name);
         this.draw();
         [...this.element.querySelectorAll(".expand")].find((b) => b.dataset.name === row.name)?.focus();
-      }, "data-name": row.name }, open ? "hide seeds" : `${row.runs.length} seeds`) : null);
+      }, "data-name": row.name }, open ? "hide runs" : `${row.runs.length} runs`) : null);
     const main = el("tr", { class: this.state.isVisible(row.name) ? "" : "off" }, name,
       ...this.columns.map(([metric]) => cell(row.cells[metric], best[metric] === row.name, count)), statusCell(row.runs));
     if (!several || !open) return [main];
@@ -175,7 +175,8 @@ export class FullTable {
       return el("tr", {}, el("th", { scope: "row" }, el("code", { tabindex: "0", "data-tip": metricTip(this.state.data.metrics[row.metric]) || null }, row.label)),
         el("td", { class: "unit-cell" }, row.unit), ...estimators.map((name) => cell(row.cells[name], winner === name, estimators.length)));
     });
-    const head = el("tr", {}, header("metric", "Metric", "", "Sort by name"), header("unit", "Unit", "", "Sort by unit"), ...estimators.map((name) => header(name, name, "", `Sort by ${name}`)));
+    const head = el("tr", {}, header("metric", "Metric", undefined, "Sort by name"), header("unit", "Unit", undefined, "Sort by unit"),
+      ...estimators.map((name) => header(name, name, undefined, `Sort by ${name}`)));
     this.body.replaceChildren(el("table", { class: "full" }, el("thead", {}, head), el("tbody", {}, ...body)));
     if (focus) this.body.querySelectorAll("th button")[["metric", "unit", ...estimators].indexOf(focus)]?.focus();
   }

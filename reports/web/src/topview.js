@@ -118,7 +118,7 @@ export class TopView {
     if (width === 0 || width === this.width) return;
     const [x0, y0, x1, y1] = this.bounds();
     this.width = width;
-    this.height = Math.round(Math.min(Math.max(width * (y1 - y0) / (x1 - x0), 0.45 * width, 300), Math.max(340, 0.6 * width)));
+    this.height = Math.round(width * Math.min(Math.max((y1 - y0) / (x1 - x0), 0.45), 0.6));
     this.canvas.style.height = `${this.height}px`;
     const ratio = window.devicePixelRatio || 1;
     this.canvas.width = Math.round(width * ratio);
@@ -263,7 +263,7 @@ export class TopView {
     const seeds = this.state.data.seeds.length > 1 ? ` · seed ${path.seed}` : "";
     this.tip.replaceChildren(el("strong", {}, `${path.name}${seeds}`), el("br"),
       `sweep ${path.first + i * path.step}`, el("br"),
-      error === null ? "" : `${formatLength(error)} beside the truth`, el("br"),
+      error === null ? "" : `${formatLength(error)} from the truth, seen from above`, el("br"),
       el("span", { class: "muted" }, `x ${formatNumber(path.x[i])} m, y ${formatNumber(path.y[i])} m`));
     const left = hit.x + 14 + this.tip.offsetWidth > this.width ? hit.x - 14 - this.tip.offsetWidth : hit.x + 14;
     this.tip.style.left = `${Math.max(4, left)}px`;
