@@ -8,11 +8,14 @@ namespace tarmac::sim {
 
 using namespace core;
 
-LidarOptions::LidarOptions() { T_body_lidar.translation().z() = 1.9; }
+LidarOptions::LidarOptions() {
+  T_body_lidar.translation().z() = 1.9;
+}
 
 void LidarOptions::visit(OptionVisitor& v) {
   v.choice("model", model, lidar::profile_names(), "the sensor: `tarmac list sensors`");
-  v("columns", columns, "firings of each channel a revolution; 0 = the model's default (always 0 where a clock fires them)",
+  v("columns", columns,
+    "firings of each channel a revolution; 0 = the model's default (always 0 where a clock fires them)",
     {.at_least = 0});
   v("sweep_rate_hz", sweep_rate_hz, "revolutions a second; 0 = the model's default", {.at_least = 0});
   v("T_body_lidar", T_body_lidar, "pose of the sensor frame in the body frame (x forward, y left, z up)");

@@ -1,6 +1,7 @@
 #include "sim/simulate.h"
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 #include <time.h>
 
 #include <algorithm>
@@ -52,7 +53,8 @@ std::int64_t sweeps_within(const lidar::FiringTable& firing, const SimulationInp
 
 std::size_t write_imu(const RigOptions& options, const SimulationInput& input, RecordingWriter& recording) {
   const Time end = std::min(Time(input.duration), input.motion->end());
-  const std::vector<ImuSample> samples = synthesize_imu(*input.motion, options.imu, options.gravity_m_s2, Time{}, end, input.seed, "imu0");
+  const std::vector<ImuSample> samples =
+      synthesize_imu(*input.motion, options.imu, options.gravity_m_s2, Time{}, end, input.seed, "imu0");
   const std::size_t chunk = std::max<std::size_t>(1, static_cast<std::size_t>(options.imu.rate_hz));  // a second each
   for (std::size_t i = 0; i < samples.size(); i += chunk)
     recording.write(0, std::span(samples).subspan(i, std::min(chunk, samples.size() - i)));
@@ -66,11 +68,14 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
                            const Progress& progress) {
   const Stopwatch watch;
   const int threads = std::max(1, settings.threads);
+  // More threads than processors too, when that is asked for; without this TBB would quietly give fewer.
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const RigOptions options = read_rig(input.rig);
   const lidar::Profile& profile = lidar::profile(options.lidar.model);
   const Rig rig = data_sheet(options);
 
-  const auto tracer = std::make_shared<const raycast::Tracer>(input.scene, raycast::TracerSettings{threads, settings.fast});
+  const auto tracer =
+      std::make_shared<const raycast::Tracer>(input.scene, raycast::TracerSettings{threads, settings.fast});
   const lidar::SweepSimulator simulator(profile, {options.lidar.columns, options.lidar.sweep_rate_hz},
                                         {.sensor = 0, .T_body_lidar = options.lidar.T_body_lidar}, options.lidar.noise,
                                         input.seed, tracer, input.scene, input.motion);
@@ -100,6 +105,8 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   return summary;
 }
 
-std::string resolve_rig(const ConfigNode& rig) { return write_options(read_rig(rig), 2); }
+std::string resolve_rig(const ConfigNode& rig) {
+  return write_options(read_rig(rig), 2);
+}
 
 }  // namespace tarmac::sim

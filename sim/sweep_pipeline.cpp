@@ -23,7 +23,9 @@ struct FinishedSweep {
   Packed points, labels;
 };
 
-Packed pack(const ChunkData& data) { return {ChunkWriter::digest(data), ChunkWriter::pack(data)}; }
+Packed pack(const ChunkData& data) {
+  return {ChunkWriter::digest(data), ChunkWriter::pack(data)};
+}
 
 truth::PointLabels labels_of(const lidar::SimulatedSweep& simulated, const scenes::Scene& scene) {
   truth::PointLabels labels;

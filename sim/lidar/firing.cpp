@@ -31,7 +31,8 @@ FiringTable::FiringTable(const Profile& p, const Mode& mode)
     const double offset_ns = std::round(p.firing_us[c] * 1e3);
     const double elevation = p.elevation_deg[c] * rad_per_deg;
     const double azimuth = p.azimuth_offset_cw_deg[c] * rad_per_deg + spin_rad_ns * offset_ns;
-    beams_.push_back({std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)});
+    beams_.push_back(
+        {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)});
     offset_ns_.push_back(static_cast<std::int32_t>(offset_ns));
     elevation_rad_.push_back(elevation);
     azimuth_rad_.push_back(azimuth);
@@ -61,7 +62,8 @@ SweepSpan FiringTable::sweep(std::int64_t index) const {
 
 Cycle FiringTable::cycle(const SweepSpan& sweep, std::int64_t k) const {
   const double turns = (static_cast<double>(sweep.first_cycle) - static_cast<double>(sweep.index) * cycles_per_turn_ +
-                        static_cast<double>(k)) / cycles_per_turn_;
+                        static_cast<double>(k)) /
+                       cycles_per_turn_;
   const double azimuth = start_rad_ + turns * turn_rad;
   return {cycle_time(sweep.first_cycle + k), std::cos(azimuth), std::sin(azimuth)};
 }
@@ -76,14 +78,16 @@ std::int64_t FiringTable::sweeps_until(core::Time end) const {
 std::vector<std::vector<std::size_t>> FiringTable::channel_groups() const {
   std::vector<std::size_t> order(channels());
   for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return azimuth_rad_[a] < azimuth_rad_[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return azimuth_rad_[a] < azimuth_rad_[b]; });
   std::vector<std::vector<std::size_t>> groups;
   for (const std::size_t c : order) {
     if (groups.empty() || azimuth_rad_[c] - azimuth_rad_[groups.back().front()] > same_fan_rad) groups.emplace_back();
     groups.back().push_back(c);
   }
   for (auto& group : groups)
-    std::stable_sort(group.begin(), group.end(), [&](std::size_t a, std::size_t b) { return elevation_rad_[a] < elevation_rad_[b]; });
+    std::stable_sort(group.begin(), group.end(),
+                     [&](std::size_t a, std::size_t b) { return elevation_rad_[a] < elevation_rad_[b]; });
   return groups;
 }
 
@@ -91,7 +95,9 @@ std::vector<std::uint32_t> FiringTable::tiles(std::size_t cycles) const {
   constexpr std::size_t tile = raycast::SweepTracer::tile;
   std::vector<std::uint32_t> order;
   for (const std::vector<std::size_t>& group : channel_groups()) {
-    const double rise = group.size() < 2 ? 0 : (elevation_rad_[group.back()] - elevation_rad_[group.front()]) / static_cast<double>(group.size() - 1);
+    const double rise = group.size() < 2 ? 0
+                                         : (elevation_rad_[group.back()] - elevation_rad_[group.front()]) /
+                                               static_cast<double>(group.size() - 1);
     std::size_t high = 1;  // channels in a tile: as many as make it most nearly square
     for (const std::size_t h : {2, 4, 8, 16}) {
       const auto extent = [&](std::size_t n) {

@@ -20,14 +20,14 @@ struct SweepSpan {
   std::int64_t index = 0;
   std::int64_t first_cycle = 0;  ///< counted from the recording's start
   std::int64_t cycles = 0;
-  core::Time begin, end;         ///< of the first and the last firing
+  core::Time begin, end;  ///< of the first and the last firing
 };
 
 /// The firing table of one sensor in one mode. Cycle n of the recording:
 ///   encoder: t = n / (columns rate), azimuth = start + 360 (n mod columns) / columns
 ///   clock:   t = n cycle_us,         azimuth = start + 360 rate t; sweep k holds the cycles with k <= rate t < k + 1
-/// Channel c fires at t + firing_us[c], in the direction azimuth + azimuth_offset_cw_deg[c] + (clock: 360 rate firing_us[c]).
-/// Times are rounded to a nanosecond.
+/// Channel c fires at t + firing_us[c], in the direction azimuth + azimuth_offset_cw_deg[c] + (clock: 360 rate
+/// firing_us[c]). Times are rounded to a nanosecond.
 class FiringTable {
  public:
   FiringTable(const Profile& profile, const Mode& mode);
@@ -69,7 +69,7 @@ class FiringTable {
 
   Mode mode_;
   bool by_encoder_;
-  double cycle_ns_;        // real-valued for encoder timing
+  double cycle_ns_;  // real-valued for encoder timing
   double cycles_per_turn_;
   double start_rad_, step_rad_;
   double radius_m_, height_m_;

@@ -39,7 +39,8 @@ void check(const ConfigNode& node, const Profile& p) {
   if (p.sigma_m.empty() || p.sigma_from_m.front() != 0) node.fail_at("sigma_from_m", "must begin with 0");
   if (!std::is_sorted(p.sigma_from_m.begin(), p.sigma_from_m.end())) node.fail_at("sigma_from_m", "must ascend");
   if (!(p.min_range_m < p.max_range_m)) node.fail_at("max_range_m", "must be above min_range_m");
-  if (!(p.range_10_percent_m < p.range_80_percent_m)) node.fail_at("range_80_percent_m", "must be above range_10_percent_m");
+  if (!(p.range_10_percent_m < p.range_80_percent_m))
+    node.fail_at("range_80_percent_m", "must be above range_10_percent_m");
   if (p.by_encoder() && p.modes.empty()) node.fail_at("modes", "is empty; a sensor with timing: encoder needs one");
   if (!p.by_encoder() && !(p.cycle_us > 0)) node.fail_at("cycle_us", "must be above 0 with timing: clock");
   for (const std::string& mode : p.modes) parse_mode(mode);
@@ -66,7 +67,8 @@ void Profile::visit(core::OptionVisitor& v) {
   v("min_rate_hz", min_rate_hz, "slowest spin (timing: clock)", {.above = 0});
   v("max_rate_hz", max_rate_hz, "fastest spin (timing: clock)", {.above = 0});
   v("cycle_us", cycle_us, "from one firing cycle to the next (timing: clock)", {.at_least = 0});
-  v("azimuth_start_deg", azimuth_start_deg, "where a sweep begins, clockwise from sensor +x", {.at_least = 0, .below = 360});
+  v("azimuth_start_deg", azimuth_start_deg, "where a sweep begins, clockwise from sensor +x",
+    {.at_least = 0, .below = 360});
   v("beam_origin_radius_m", beam_origin_radius_m, "circle about the spin axis on which beams start", {.at_least = 0});
   v("beam_origin_height_m", beam_origin_height_m, "of that circle above the sensor frame's origin");
   v("min_range_m", min_range_m, "nearer echoes are not reported", {.at_least = 0});
@@ -116,7 +118,9 @@ const Profile& profile(const std::string& name) {
 Mode mode_of(const Profile& p, int columns, double rate_hz) {
   if (!p.by_encoder()) {
     const double rate = rate_hz > 0 ? rate_hz : p.default_rate_hz;
-    if (columns != 0) throw InputError(fmt::format("{} fires by the clock: its columns follow from sweep_rate_hz; leave columns out", p.name));
+    if (columns != 0)
+      throw InputError(
+          fmt::format("{} fires by the clock: its columns follow from sweep_rate_hz; leave columns out", p.name));
     if (rate < p.min_rate_hz || rate > p.max_rate_hz)
       throw InputError(fmt::format("{} turns at {} to {} Hz, not at {}", p.name, p.min_rate_hz, p.max_rate_hz, rate));
     return {0, rate};

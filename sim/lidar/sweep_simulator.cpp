@@ -25,7 +25,9 @@ double thread_cpu_s() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-std::string stream_name(std::uint16_t sensor, const char* effect) { return fmt::format("lidar{}/{}", sensor, effect); }
+std::string stream_name(std::uint16_t sensor, const char* effect) {
+  return fmt::format("lidar{}/{}", sensor, effect);
+}
 
 // The pose of the sensor around one cycle's time: T(t + dt) = (p + v dt, R (I + hat(w) dt)), p relative to `base`.
 struct SensorMotion {
@@ -157,7 +159,8 @@ void SweepSimulator::report(const SweepSpan&, const Workspace& w, SimulatedSweep
     for (std::size_t c = 0; c < channels; ++c, ++i) {
       if (!(e.range_m[i] >= profile_.min_range_m && e.range_m[i] <= profile_.max_range_m)) continue;
       const Vector3d p = origin + (e.range_m[i] - firing_.range_offset_m()) * firing_.direction(w.cycles[k], c);
-      out.sweep.push_back(p.cast<float>(), w.rays.t_ns[i], static_cast<std::uint16_t>(profile_.ring[c]), e.intensity[i]);
+      out.sweep.push_back(p.cast<float>(), w.rays.t_ns[i], static_cast<std::uint16_t>(profile_.ring[c]),
+                          e.intensity[i]);
       out.instance.push_back(w.hits.instance[i]);
     }
   }

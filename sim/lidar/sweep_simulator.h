@@ -26,7 +26,7 @@ struct NoiseOptions {
 };
 
 struct Mounting {
-  std::uint16_t sensor = 0;                      ///< index into Rig::lidars; part of the names of random draws
+  std::uint16_t sensor = 0;                        ///< index into Rig::lidars; part of the names of random draws
   core::SE3 T_body_lidar = core::SE3::Identity();  ///< true
 };
 
@@ -40,9 +40,9 @@ struct SimulatedSweep {
 
 /// Simulates sweeps in any order, on any number of threads at once: each is a function of its index alone.
 ///
-/// A beam leaves from the exact pose of the body at its cycle's time; where channels fire one after the other, the body's
-/// velocity and rate carry the pose over the rest of the cycle (first order; over 35 microseconds the neglected second
-/// order is below a micrometre at 100 m), while the spin of the head is in the beam table exactly.
+/// A beam leaves from the exact pose of the body at its cycle's time; where channels fire one after the other, the
+/// body's velocity and rate carry the pose over the rest of the cycle (first order; over 35 microseconds the neglected
+/// second order is below a micrometre at 100 m), while the spin of the head is in the beam table exactly.
 class SweepSimulator {
  public:
   SweepSimulator(const Profile& profile, const Mode& mode, const Mounting& mounting, const NoiseOptions& noise,
@@ -60,7 +60,8 @@ class SweepSimulator {
     Echoes echoes;
     std::vector<Cycle> cycles;
   };
-  void aim(const SweepSpan& span, std::int64_t first, std::size_t cycles, const Eigen::Vector3d& base, Workspace& w) const;
+  void aim(const SweepSpan& span, std::int64_t first, std::size_t cycles, const Eigen::Vector3d& base,
+           Workspace& w) const;
   void measure(const SweepSpan& span, std::int64_t first, Workspace& w) const;
   void report(const SweepSpan& span, const Workspace& w, SimulatedSweep& out) const;
 

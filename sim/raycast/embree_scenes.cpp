@@ -11,7 +11,8 @@ namespace tarmac::sim::raycast {
 namespace {
 
 void throw_reason(void*, RTCError code, const char* reason) {
-  if (code != RTC_ERROR_NONE) throw std::runtime_error(fmt::format("Embree: {} (code {})", reason, static_cast<int>(code)));
+  if (code != RTC_ERROR_NONE)
+    throw std::runtime_error(fmt::format("Embree: {} (code {})", reason, static_cast<int>(code)));
 }
 
 void set_rigid(RTCGeometry instance, const core::SE3& pose) {
@@ -44,8 +45,8 @@ void set_moving(RTCGeometry instance, std::span<const core::SE3> poses) {
 Device new_device(const std::string& config) {
   RTCDevice device = rtcNewDevice(config.c_str());
   if (device == nullptr)
-    throw std::runtime_error(fmt::format("Embree cannot start with '{}' (code {})", config,
-                                         static_cast<int>(rtcGetDeviceError(nullptr))));
+    throw std::runtime_error(
+        fmt::format("Embree cannot start with '{}' (code {})", config, static_cast<int>(rtcGetDeviceError(nullptr))));
   rtcSetDeviceErrorFunction(device, throw_reason, nullptr);
   return Device(device);
 }
@@ -68,7 +69,9 @@ EmbreeScene mesh_scene(RTCDevice device, const scenes::Mesh& mesh) {
   return scene;
 }
 
-EmbreeScene top_scene(RTCDevice device) { return EmbreeScene(rtcNewScene(device)); }
+EmbreeScene top_scene(RTCDevice device) {
+  return EmbreeScene(rtcNewScene(device));
+}
 
 void add_instance(RTCDevice device, RTCScene top, RTCScene mesh, unsigned id, std::span<const core::SE3> poses) {
   RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);

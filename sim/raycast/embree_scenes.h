@@ -28,8 +28,8 @@ Device new_device(const std::string& config);
 EmbreeScene mesh_scene(RTCDevice device, const scenes::Mesh& mesh);
 /// A top scene: holds instances only, so that a commit costs next to nothing.
 EmbreeScene top_scene(RTCDevice device);
-/// Adds an instance under `id`, which hits report. `poses` are T_base_mesh at equidistant times, the first at ray time 0
-/// and the last at 1; one pose stands still.
+/// Adds an instance under `id`, which hits report. `poses` are T_base_mesh at equidistant times, the first at ray time
+/// 0 and the last at 1; one pose stands still.
 void add_instance(RTCDevice device, RTCScene top, RTCScene mesh, unsigned id, std::span<const core::SE3> poses);
 /// Builds the hierarchy. Waits without taking up other work of the thread pool: callers may hold locks.
 void commit(RTCScene scene);

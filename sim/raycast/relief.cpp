@@ -7,17 +7,38 @@
 namespace tarmac::sim::raycast {
 namespace {
 
-constexpr double tolerance_m = 20e-6;   // of height
+constexpr double tolerance_m = 20e-6;  // of height
 constexpr double grazing_cosine = 0.01;
-constexpr int max_iterations = 24;
+constexpr int max_iterations = 40;
 
-// Where f is known to be positive (above the relief) and not positive (in it); rays run from above to below.
-struct Bracket {
-  double above = -std::numeric_limits<double>::infinity();
-  double below = std::numeric_limits<double>::infinity();
-  void narrow(double t, double f) { (f > 0 ? above : below) = t; }
-  bool closed() const { return std::isfinite(above) && std::isfinite(below) && above < below; }
-  bool holds(double t) const { return t > std::min(above, below) && t < std::max(above, below); }
+// Heights seen so far bound how far a ray can be from its macro hit: farther out it is above or in the relief for sure.
+class Bracket {
+ public:
+  explicit Bracket(double nd) : nd_(nd) {}
+  void add(double s, double f, double h) {
+    highest_m_ = std::max(highest_m_, std::abs(h));
+    if (f <= 0) {
+      below_ = std::min(below_, s);
+      if (above_ >= below_) above_ = -infinity;
+    } else if (s < below_) {
+      above_ = std::max(above_, s);
+    }  // else: above the relief behind a crest that the ray has gone through; what counts is before it
+  }
+  /// `wanted` where it lies between the known sides, else a point that brings them together.
+  double next(double wanted) {
+    if (std::isfinite(above_) && std::isfinite(below_))
+      return wanted > above_ && wanted < below_ ? wanted : 0.5 * (above_ + below_);
+    if (wanted < below_) return wanted;
+    retreat_ *= 2;
+    return below_ + retreat_ * highest_m_ / nd_;  // nd < 0: backwards
+  }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  double nd_;
+  double above_ = -infinity, below_ = infinity;  // rays run from above the relief to below it
+  double highest_m_ = 0;
+  double retreat_ = 0.5;
 };
 
 double shaded_cosine(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal, const Eigen::Vector2d& gradient) {
@@ -34,18 +55,17 @@ ReliefHit meet_relief(const scenes::Relief& relief, const Eigen::Vector3d& p_mac
   ReliefHit hit{t_macro_m, -nd};
   if (nd > -grazing_cosine) return hit;
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
-  Bracket bracket;
+  Bracket bracket(nd);
   double s = 0;  // t - t_macro
   for (int i = 0; i < max_iterations; ++i) {
-    const double h = relief.height_m(p_macro_world.x() + s * direction.x(), p_macro_world.y() + s * direction.y(), &gradient);
+    const double h =
+        relief.height_m(p_macro_world.x() + s * direction.x(), p_macro_world.y() + s * direction.y(), &gradient);
     const double f = s * nd - h;
     if (std::abs(f) < tolerance_m) break;
-    bracket.narrow(s, f);
+    bracket.add(s, f, h);
     const double slope = nd - gradient.x() * direction.x() - gradient.y() * direction.y();
     // The height field's own slope may turn the ray's approach round; the macro slope never does.
-    double next = s - f / (slope < 0.25 * nd ? slope : nd);
-    if (bracket.closed() && !bracket.holds(next)) next = 0.5 * (bracket.above + bracket.below);
-    s = next;
+    s = bracket.next(s - f / (slope < 0.25 * nd ? slope : nd));
   }
   hit.t_m = t_macro_m + s;
   hit.cos_incidence = shaded_cosine(direction, normal, gradient);

@@ -18,10 +18,10 @@ struct ReliefHit {
 /// One Newton step from t_macro settles smooth texture seen from above. Where the step leaves more than 20 micrometres
 /// it is repeated, inside a bracket, so that the result always lies on the relief.
 ///
-/// At grazing incidence a ray may cross the relief several times; the crossing found is near t_macro and need not be the
-/// first, for crests do not shade the troughs behind them. Below |n'd| = 0.01 (0.6 degrees) that question has no useful
-/// answer within a millimetre of height, and the macro surface is kept.
-ReliefHit meet_relief(const scenes::Relief& relief, const Eigen::Vector3d& p_macro_world, const Eigen::Vector3d& direction,
-                      const Eigen::Vector3d& normal, double t_macro_m);
+/// At grazing incidence a ray may cross the relief several times; the crossing found is near t_macro and need not be
+/// the first, for crests do not shade the troughs behind them. Below |n'd| = 0.01 (0.6 degrees) that question has no
+/// useful answer within a millimetre of height, and the macro surface is kept.
+ReliefHit meet_relief(const scenes::Relief& relief, const Eigen::Vector3d& p_macro_world,
+                      const Eigen::Vector3d& direction, const Eigen::Vector3d& normal, double t_macro_m);
 
 }  // namespace tarmac::sim::raycast

@@ -36,8 +36,8 @@ void check_references(const scenes::Scene& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const scenes::Instance& instance = scene.instances[i];
     if (instance.mesh >= scene.meshes.size())
-      throw InputError(fmt::format("scene {}: instance {} names mesh {} of {}", scene.name, i, instance.mesh,
-                                   scene.meshes.size()));
+      throw InputError(
+          fmt::format("scene {}: instance {} names mesh {} of {}", scene.name, i, instance.mesh, scene.meshes.size()));
     if (instance.actor >= static_cast<std::int32_t>(scene.actors.size()))
       throw InputError(fmt::format("scene {}: instance {} names actor {} of {}", scene.name, i, instance.actor,
                                    scene.actors.size()));

@@ -35,7 +35,8 @@ Cell cell_of(const Eigen::Vector3d& p) {
 }
 
 Eigen::Vector3d centre_of(const Cell& cell) {
-  return base_grid_m * Eigen::Vector3d(static_cast<double>(cell[0]), static_cast<double>(cell[1]), static_cast<double>(cell[2]));
+  return base_grid_m *
+         Eigen::Vector3d(static_cast<double>(cell[0]), static_cast<double>(cell[1]), static_cast<double>(cell[2]));
 }
 
 SE3 relative_to(const Eigen::Vector3d& base, SE3 T_world_mesh) {
@@ -44,11 +45,13 @@ SE3 relative_to(const Eigen::Vector3d& base, SE3 T_world_mesh) {
 }
 
 std::string choose_isa(bool fast) {
-  if (fast && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
+  if (fast && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq"))
     return "avx512";
   if (__builtin_cpu_supports("avx2")) return "avx2";
   if (fast) return "sse4.2";
-  throw core::InputError("this processor has no AVX2, which reproducible recordings are pinned to; --fast takes what there is");
+  throw core::InputError(
+      "this processor has no AVX2, which reproducible recordings are pinned to; --fast takes what there is");
 }
 
 struct MeshData {
@@ -94,7 +97,8 @@ struct SweepTracer::State {
 
   using PoseCache = std::unordered_map<std::uint64_t, SE3>;
   void load(const Rays& rays, std::span<const std::uint32_t> lanes, RTCRayHit16& packet, int* valid) const;
-  void finish(const Rays& rays, const RTCRayHit16& packet, std::size_t lane, std::size_t i, PoseCache& poses, Hits& hits) const;
+  void finish(const Rays& rays, const RTCRayHit16& packet, std::size_t lane, std::size_t i, PoseCache& poses,
+              Hits& hits) const;
   SE3 T_base_mesh(const scenes::Instance& instance, std::int32_t t_ns, PoseCache& poses) const;
 };
 
@@ -137,7 +141,9 @@ Tracer::Tracer(std::shared_ptr<const scenes::Scene> scene, const TracerSettings&
 
 Tracer::~Tracer() = default;
 
-const std::string& Tracer::isa() const { return state_->isa; }
+const std::string& Tracer::isa() const {
+  return state_->isa;
+}
 
 SweepTracer Tracer::sweep(Time begin, Time end, const Eigen::Vector3d& origin_world, double reach_m) const {
   SweepTracer result;
@@ -156,18 +162,21 @@ SweepTracer Tracer::sweep(Time begin, Time end, const Eigen::Vector3d& origin_wo
     if (!state_->may_meet(actor, begin, end, origin_world, reach_m)) continue;
     const int steps = motion_steps(actor.motion->acceleration_bound_m_s2(begin, end, actor.radius_m), end - begin);
     if (steps > max_motion_steps)
-      throw core::InputError(fmt::format("scene {}: actor {} needs {} motion steps in a sweep of {} s; at most {} are "
-                                         "possible: let it move more smoothly or sweep faster",
-                                         scene.name, actor.name, steps, core::to_s(end - begin), max_motion_steps));
+      throw core::InputError(
+          fmt::format("scene {}: actor {} needs {} motion steps in a sweep of {} s; at most {} are "
+                      "possible: let it move more smoothly or sweep faster",
+                      scene.name, actor.name, steps, core::to_s(end - begin), max_motion_steps));
     std::vector<SE3> T_world_actor;
-    for (int k = 0; k < steps; ++k) T_world_actor.push_back(actor.motion->T_world_actor(begin + k * (end - begin) / (steps - 1)));
+    for (int k = 0; k < steps; ++k)
+      T_world_actor.push_back(actor.motion->T_world_actor(begin + k * (end - begin) / (steps - 1)));
     if (!sweep.moving_scene) sweep.moving_scene = top_scene(state_->device.get());
     ++sweep.actors;
     std::vector<SE3> poses(T_world_actor.size());
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
       const scenes::Instance& instance = scene.instances[i];
       if (instance.actor != static_cast<std::int32_t>(a)) continue;
-      for (std::size_t k = 0; k < poses.size(); ++k) poses[k] = relative_to(sweep.base, T_world_actor[k] * instance.T_parent_mesh);
+      for (std::size_t k = 0; k < poses.size(); ++k)
+        poses[k] = relative_to(sweep.base, T_world_actor[k] * instance.T_parent_mesh);
       add_instance(state_->device.get(), sweep.moving_scene.get(), state_->meshes[instance.mesh].scene.get(),
                    static_cast<unsigned>(i), poses);
     }
@@ -181,8 +190,12 @@ SweepTracer::SweepTracer(SweepTracer&&) noexcept = default;
 SweepTracer& SweepTracer::operator=(SweepTracer&&) noexcept = default;
 SweepTracer::~SweepTracer() = default;
 
-const Eigen::Vector3d& SweepTracer::base() const { return state_->base; }
-std::size_t SweepTracer::actors_in_range() const { return state_->actors; }
+const Eigen::Vector3d& SweepTracer::base() const {
+  return state_->base;
+}
+std::size_t SweepTracer::actors_in_range() const {
+  return state_->actors;
+}
 
 void SweepTracer::trace(const Rays& rays, std::span<const std::uint32_t> order, Hits& hits) const {
   const State& s = *state_;
@@ -204,7 +217,8 @@ void SweepTracer::trace(const Rays& rays, std::span<const std::uint32_t> order, 
   }
 }
 
-void SweepTracer::State::load(const Rays& rays, std::span<const std::uint32_t> lanes, RTCRayHit16& packet, int* valid) const {
+void SweepTracer::State::load(const Rays& rays, std::span<const std::uint32_t> lanes, RTCRayHit16& packet,
+                              int* valid) const {
   const float per_ns = static_cast<float>(1 / span_ns);
   for (std::size_t lane = 0; lane < tile; ++lane) {
     const bool used = lanes[lane] != no_ray;
@@ -232,7 +246,8 @@ SE3 SweepTracer::State::T_base_mesh(const scenes::Instance& instance, std::int32
   const std::uint64_t key = (static_cast<std::uint64_t>(instance.actor) << 32) | static_cast<std::uint32_t>(t_ns);
   const auto [entry, is_new] = poses.try_emplace(key);
   if (is_new)
-    entry->second = tracer->scene->actors[static_cast<std::size_t>(instance.actor)].motion->T_world_actor(begin + Duration(t_ns));
+    entry->second =
+        tracer->scene->actors[static_cast<std::size_t>(instance.actor)].motion->T_world_actor(begin + Duration(t_ns));
   return relative_to(base, entry->second * instance.T_parent_mesh);
 }
 

@@ -71,7 +71,8 @@ class SweepTracer {
 
 class Tracer {
  public:
-  /// Throws InputError when the processor lacks AVX2 and `fast` is not set, or when the scene refers to what it has not.
+  /// Throws InputError when the processor lacks AVX2 and `fast` is not set, or when the scene refers to what it has
+  /// not.
   Tracer(std::shared_ptr<const scenes::Scene> scene, const TracerSettings& settings);
   ~Tracer();
   Tracer(const Tracer&) = delete;

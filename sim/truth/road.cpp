@@ -1,5 +1,6 @@
 #include "sim/truth/road.h"
 
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 
@@ -24,30 +25,37 @@ double sinc(double x) {
   return std::abs(x) < 1e-9 ? 1 : std::sin(x) / x;
 }
 
-/// Sine and cosine of 2 pi y, without branches so that loops over it vectorise. y is reduced exactly; half the angle
-/// goes through its Taylor series (|angle| <= pi/2: error below 1e-15) and is doubled.
-inline void sin_cos_cycles(double y, double& s, double& c) {
+using Lanes = Eigen::Array4d;  ///< waves are summed four at a time
+
+constexpr double odd(int n) {
+  return n == 0 ? 1 : -odd(n - 1) / (2 * n * (2 * n + 1));
+}
+constexpr double even(int n) {
+  return n == 0 ? 1 : -even(n - 1) / (2 * n * (2 * n - 1));
+}
+
+/// Taylor coefficients of sin x / x and cos x by x^2.
+constexpr int terms = 11;
+struct Series {
+  std::array<double, terms> sine{}, cosine{};
+  constexpr Series() {
+    for (int n = 0; n < terms; ++n) sine[n] = odd(n), cosine[n] = even(n);
+  }
+};
+constexpr Series series;
+
+/// Sine and cosine of 2 pi y. y is reduced exactly; half the angle goes through its Taylor series (|angle| <= pi/2:
+/// error below 1e-15) and is doubled.
+inline void sin_cos_cycles(const Lanes& y, Lanes& s, Lanes& c) {
   constexpr double round_to_integer = 6755399441055744.0;  // 1.5 * 2^52
-  const double x = std::numbers::pi * (y - ((y + round_to_integer) - round_to_integer));
-  const double q = x * x;
-  const double sh =
-      x * (1 + q * (-1.0 / 6 +
-                    q * (1.0 / 120 +
-                         q * (-1.0 / 5040 +
-                              q * (1.0 / 362880 +
-                                   q * (-1.0 / 39916800 +
-                                        q * (1.0 / 6227020800.0 + q * (-1.0 / 1307674368000.0 +
-                                                                       q * (1.0 / 355687428096000.0 +
-                                                                            q * (-1.0 / 121645100408832000.0))))))))));
-  const double ch =
-      1 + q * (-0.5 + q * (1.0 / 24 +
-                           q * (-1.0 / 720 +
-                                q * (1.0 / 40320 + q * (-1.0 / 3628800 +
-                                                        q * (1.0 / 479001600 +
-                                                             q * (-1.0 / 87178291200.0 +
-                                                                  q * (1.0 / 20922789888000.0 +
-                                                                       q * (-1.0 / 6402373705728000.0 +
-                                                                            q * (1.0 / 2432902008176640000.0))))))))));
+  const Lanes whole = (y + round_to_integer) - round_to_integer;
+  const Lanes x = std::numbers::pi * (y - whole), q = x * x;
+  Lanes sh = Lanes::Constant(series.sine[terms - 1]), ch = Lanes::Constant(series.cosine[terms - 1]);
+  for (int n = terms - 2; n >= 0; --n) {
+    sh = sh * q + series.sine[n];
+    ch = ch * q + series.cosine[n];
+  }
+  sh *= x;
   s = 2 * sh * ch;
   c = 1 - 2 * sh * sh;
 }
@@ -87,6 +95,10 @@ void Road::add_waves(const RoadOptions& options, double track_m, std::uint64_t s
       to[roll].push_back((front(left, i) - front(right, i) + left[i] - right[i]) / (2 * track_m));
     }
   }
+  // at() takes four at a time: fill up with waves of no height.
+  for (auto* column : {&cycles_per_m_, &sine_[0], &sine_[1], &sine_[2], &cosine_[0], &cosine_[1], &cosine_[2]}) {
+    column->resize((column->size() + 3) / 4 * 4, 0.0);
+  }
 }
 
 Jet Road::joint(double s_m) const {
@@ -98,24 +110,24 @@ Jet Road::joint(double s_m) const {
 }
 
 std::array<Jet, 3> Road::at(double s_m) const {
-  std::array<Jet, 3> sum{};
-  const std::size_t count = cycles_per_m_.size();
-  for (std::size_t first = 0; first < count; first += 8) {
-    const std::size_t size = std::min<std::size_t>(8, count - first);
-    double s[8] = {}, c[8] = {}, k[8] = {};
-    for (std::size_t i = 0; i < size; ++i) k[i] = cycles_per_m_[first + i];
-    for (std::size_t i = 0; i < 8; ++i) sin_cos_cycles(k[i] * s_m, s[i], c[i]);
+  struct LanesJet {
+    Lanes f = Lanes::Zero(), d1 = Lanes::Zero(), d2 = Lanes::Zero();
+  };
+  std::array<LanesJet, 3> lanes;
+  for (std::size_t i = 0; i < cycles_per_m_.size(); i += 4) {
+    const Lanes n = Eigen::Map<const Lanes>(&cycles_per_m_[i]), w = two_pi * n;
+    Lanes s, c;
+    sin_cos_cycles(n * s_m, s, c);
     for (int mode = 0; mode < 3; ++mode) {
-      const double* a = sine_[mode].data() + first;
-      const double* b = cosine_[mode].data() + first;
-      for (std::size_t i = 0; i < size; ++i) {
-        const double value = a[i] * s[i] + b[i] * c[i], w = two_pi * k[i];
-        sum[mode].f += value;
-        sum[mode].d1 += w * (a[i] * c[i] - b[i] * s[i]);
-        sum[mode].d2 -= w * w * value;
-      }
+      const Lanes a = Eigen::Map<const Lanes>(&sine_[mode][i]), b = Eigen::Map<const Lanes>(&cosine_[mode][i]);
+      const Lanes value = a * s + b * c;
+      lanes[mode].f += value;
+      lanes[mode].d1 += w * (a * c - b * s);
+      lanes[mode].d2 -= w * w * value;
     }
   }
+  std::array<Jet, 3> sum;
+  for (int mode = 0; mode < 3; ++mode) sum[mode] = {lanes[mode].f.sum(), lanes[mode].d1.sum(), lanes[mode].d2.sum(), 0};
   if (joint_spacing_m_ > 0) {
     const Jet rear = joint(s_m), front = joint(s_m + wheelbase_m_);
     sum[heave] = sum[heave] + 0.5 * (rear + front);

@@ -84,8 +84,8 @@ int estimate(const Arguments& a) {
   const estimators::EstimatorEntry& entry = find(a.estimator);
   const core::DiagnosticsLevel level = core::diagnostics_level(a.diagnostics);
   const core::ConfigNode options = a.options.empty() ? core::ConfigNode() : core::ConfigNode::load(a.options);
+  begin_outputs(a.output);  // from here on an earlier result cannot be taken for this run's
   const core::Recording recording = core::Recording::open(a.recording);
-  begin_outputs(a.output);
   say(fmt::format("{}: {} sweeps of recording {}, threads: {}", entry.name,
                   recording.rig().lidars.empty() ? 0 : recording.sweep_count(), recording.hash(), a.jobs));
   const estimators::RunResult run = estimators::run_estimator(

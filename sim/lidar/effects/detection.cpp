@@ -35,7 +35,8 @@ void Detection::operator()(Echoes& echoes) const {
     if (echoes.range_m[i] <= 0) continue;
     const float x = static_cast<float>(echoes.range_m[i]) * per_step;
     const std::size_t k = std::min(static_cast<std::size_t>(x), falloff_.size() - 2);
-    const float excess = echoes.signal[i] * (falloff_[k] + (x - static_cast<float>(k)) * (falloff_[k + 1] - falloff_[k])) - threshold;
+    const float excess =
+        echoes.signal[i] * (falloff_[k] + (x - static_cast<float>(k)) * (falloff_[k + 1] - falloff_[k])) - threshold;
     if (excess > certain) continue;
     float n = 0;
     if (excess > -certain) stream_.normals(echoes.first_firing + i, {&n, 1});

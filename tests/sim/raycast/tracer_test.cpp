@@ -22,7 +22,8 @@ struct Shot {
   double t_s = 0;
 };
 
-Hits shoot(const scenes::Scene& scene, const std::vector<Shot>& shots, TracerSettings settings = {}, double reach_m = 150) {
+Hits shoot(const scenes::Scene& scene, const std::vector<Shot>& shots, TracerSettings settings = {},
+           double reach_m = 150) {
   const Tracer tracer(std::make_shared<scenes::Scene>(scene), settings);
   const SweepTracer sweep = tracer.sweep(time_from_s(0), time_from_s(sweep_s), shots[0].origin_world, reach_m);
   Rays rays;
@@ -60,7 +61,8 @@ TEST(Tracer, RangeToADistantPlaneIsExactToMicrometresFarFromTheWorldsOrigin) {
   const Hits hits = shoot(scene, shots);
   for (std::size_t i = 0; i < shots.size(); ++i) {
     const double expected_m = n.dot(T.translation() - origin) / n.dot(shots[i].direction);
-    ASSERT_NEAR(hits.t_m[i], expected_m, 2e-6);  // vertices are floats: 80 m have steps of 8 micrometres along the plane
+    ASSERT_NEAR(hits.t_m[i], expected_m,
+                2e-6);  // vertices are floats: 80 m have steps of 8 micrometres along the plane
     EXPECT_EQ(hits.instance[i], 0u);
     EXPECT_NEAR(hits.cos_incidence[i], -n.dot(shots[i].direction), 1e-6);
   }

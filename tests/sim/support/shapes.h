@@ -35,7 +35,8 @@ Mesh revolved(const std::string& name, int rows, int columns, const Point& point
   Mesh mesh{.name = name, .vertices = {}, .triangles = {}, .materials = {}};
   for (int i = 0; i <= rows; ++i)
     for (int j = 0; j < columns; ++j)
-      mesh.vertices.push_back(Eigen::Vector3d(point(static_cast<double>(i) / rows, 2 * M_PI * j / columns)).template cast<float>());
+      mesh.vertices.push_back(
+          Eigen::Vector3d(point(static_cast<double>(i) / rows, 2 * M_PI * j / columns)).template cast<float>());
   const auto at = [columns](int i, int j) { return static_cast<std::uint32_t>(i * columns + j % columns); };
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < columns; ++j) add_quad(mesh, at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
@@ -45,7 +46,8 @@ Mesh revolved(const std::string& name, int rows, int columns, const Point& point
 inline Mesh sphere(double radius_m, int rows, int columns) {
   return revolved("sphere", rows, columns, [&](double u, double angle) -> Eigen::Vector3d {
     const double polar = M_PI * (u - 0.5);
-    return radius_m * Eigen::Vector3d(std::cos(polar) * std::cos(angle), std::cos(polar) * std::sin(angle), std::sin(polar));
+    return radius_m *
+           Eigen::Vector3d(std::cos(polar) * std::cos(angle), std::cos(polar) * std::sin(angle), std::sin(polar));
   });
 }
 
@@ -60,7 +62,9 @@ inline Mesh cylinder(double radius_m, double half_height_m, int rows, int column
 inline Mesh box(const Eigen::Vector3d& half_m) {
   Mesh mesh{.name = "box", .vertices = {}, .triangles = {}, .materials = {}};
   for (int k = 0; k < 8; ++k)
-    mesh.vertices.push_back(Eigen::Vector3d(k & 1 ? half_m.x() : -half_m.x(), k & 2 ? half_m.y() : -half_m.y(), k & 4 ? half_m.z() : -half_m.z()).cast<float>());
+    mesh.vertices.push_back(Eigen::Vector3d(k & 1 ? half_m.x() : -half_m.x(), k & 2 ? half_m.y() : -half_m.y(),
+                                            k & 4 ? half_m.z() : -half_m.z())
+                                .cast<float>());
   add_quad(mesh, 0, 2, 3, 1);
   add_quad(mesh, 4, 5, 7, 6);
   add_quad(mesh, 0, 1, 5, 4);
@@ -85,14 +89,15 @@ inline scenes::Scene empty_scene() {
   return scene;
 }
 
-inline std::uint32_t add_instance(scenes::Scene& scene, Mesh mesh, const core::SE3& T_parent_mesh, std::int32_t actor = -1,
-                                  scenes::Label label = scenes::Label::other) {
+inline std::uint32_t add_instance(scenes::Scene& scene, Mesh mesh, const core::SE3& T_parent_mesh,
+                                  std::int32_t actor = -1, scenes::Label label = scenes::Label::other) {
   scene.meshes.push_back(std::move(mesh));
   scene.instances.push_back({static_cast<std::uint32_t>(scene.meshes.size() - 1), label, actor, T_parent_mesh});
   return static_cast<std::uint32_t>(scene.instances.size() - 1);
 }
 
-inline std::int32_t add_actor(scenes::Scene& scene, std::shared_ptr<const scenes::ActorMotion> motion, double radius_m) {
+inline std::int32_t add_actor(scenes::Scene& scene, std::shared_ptr<const scenes::ActorMotion> motion,
+                              double radius_m) {
   scene.actors.push_back({"actor", std::move(motion), radius_m});
   return static_cast<std::int32_t>(scene.actors.size() - 1);
 }
