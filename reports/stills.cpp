@@ -35,8 +35,6 @@
 #include <cstring>
 #include <limits>
 
-#include "reports/offscreen_gl.h"
-
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
 
 namespace tarmac::reports {
@@ -278,7 +276,7 @@ std::string to_jpeg(const Image& image, int quality_percent) {
 }
 
 struct Stills::State {
-  explicit State(const scenes::Scene& scene_in) : scene(scene_in) {
+  State(const scenes::Scene& scene_in, const std::string& egl_library) : scene(scene_in), gl(egl_library) {
     keep_quiet_about_glew();
     connect(window);
     window->SetMapped(1);
@@ -530,7 +528,8 @@ struct Stills::State {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
 };
 
-Stills::Stills(const scenes::Scene& scene, core::Time t) : state_(std::make_unique<State>(scene)) {
+Stills::Stills(const scenes::Scene& scene, core::Time t, const std::string& egl_library)
+    : state_(std::make_unique<State>(scene, egl_library)) {
   state_->build();
   state_->place(t);
 }
