@@ -55,6 +55,7 @@ void to_planes(const std::byte* from, std::byte* to, std::size_t elements, std::
   }
 }
 void from_planes(const std::byte* from, std::byte* to, std::size_t elements, std::size_t width) {
+  if (elements == 0) return;  // a damaged width of an empty column would be counted through
   for (std::size_t plane = 0; plane < width; ++plane) {
     for (std::size_t i = 0; i < elements; ++i) to[i * width + plane] = from[plane * elements + i];
   }

@@ -20,7 +20,15 @@ struct ConfigNode::State {
   YAML::Node node{YAML::NodeType::Undefined};
   std::string file;
   std::string path;                             ///< dotted, from the file's root
+  YAML::Mark key = YAML::Mark::null_mark();     ///< of the key that names this node; none for roots and list items
   std::shared_ptr<std::set<std::string>> sets;  ///< paths that `--set` gave, with "=value"
+
+  /// Where to point at: at the key, since a block's own mark is that of its first line inside, and that of a key
+  /// without a value is what follows.
+  YAML::Mark mark() const {
+    if (!key.is_null()) return key;
+    return node.IsDefined() ? node.Mark() : YAML::Mark::null_mark();
+  }
 };
 
 namespace {
@@ -36,17 +44,23 @@ std::string joined(const std::string& path, const std::string& name) {
   throw InputError(fmt::format("{}: {}{}{}", where, path, path.empty() ? "" : ": ", message));
 }
 
-void refuse_repeated_keys(const YAML::Node& node, const std::string& file, const std::string& path) {
+/// An alias may stand inside its own anchor: what is nested deeper than this refers to itself.
+constexpr int kDeepest = 64;
+
+void refuse_repeated_keys(const YAML::Node& node, const std::string& file, const std::string& path, int depth = 0) {
+  if (depth > kDeepest) fail_where(file, node.Mark(), "", "is nested too deep; does it refer to itself?");
   if (node.IsMap()) {
     std::set<std::string> seen;
     for (const auto& entry : node) {
       if (!entry.first.IsScalar()) fail_where(file, entry.first.Mark(), path, "a key must be plain text");
       const std::string key = entry.first.Scalar();
       if (!seen.insert(key).second) fail_where(file, entry.first.Mark(), joined(path, key), "stands twice; remove one");
-      refuse_repeated_keys(entry.second, file, joined(path, key));
+      refuse_repeated_keys(entry.second, file, joined(path, key), depth + 1);
     }
   } else if (node.IsSequence()) {
-    for (std::size_t i = 0; i < node.size(); ++i) refuse_repeated_keys(node[i], file, joined(path, std::to_string(i)));
+    for (std::size_t i = 0; i < node.size(); ++i) {
+      refuse_repeated_keys(node[i], file, joined(path, std::to_string(i)), depth + 1);
+    }
   }
 }
 
@@ -270,8 +284,11 @@ ConfigNode ConfigNode::child(const std::string& name) const {
   if (present() && !is_block()) fail("must be a block of `key: value` lines");
   if (present()) {
     const YAML::Node& self = state_->node;
-    const YAML::Node found = self[name];
-    if (found.IsDefined()) out.state_->node.reset(found);
+    for (const auto& entry : self) {
+      if (entry.first.Scalar() != name) continue;
+      out.state_->node.reset(entry.second);
+      out.state_->key = entry.first.Mark();
+    }
   }
   return out;
 }
@@ -334,6 +351,7 @@ void ConfigNode::set(const std::string& dotted_path, const std::string& yaml_val
   } catch (const YAML::ParserException& error) {
     throw InputError(fmt::format("{}: the value is no YAML: {}", where, error.msg));
   }
+  refuse_repeated_keys(value, where, dotted_path);
   if (dotted_path.empty() || dotted_path.front() == '.' || dotted_path.back() == '.' ||
       dotted_path.find("..") != std::string::npos) {
     throw InputError(fmt::format("{}: expected a dotted path such as motion.cruise_m_s=5", where));
@@ -377,15 +395,14 @@ void ConfigNode::fail(const std::string& message) const {
       }
     }
   }
-  fail_where(state_->file, present() ? state_->node.Mark() : YAML::Mark::null_mark(), state_->path, message);
+  fail_where(state_->file, state_->mark(), state_->path, message);
 }
 
 void ConfigNode::fail_at(const std::string& child_name, const std::string& message) const {
   const ConfigNode node = child(child_name);
   if (node.present()) node.fail(message);
   // An absent field is reported at the line of the block that lacks it.
-  fail_where(state_->file, present() ? state_->node.Mark() : YAML::Mark::null_mark(), joined(state_->path, child_name),
-             message);
+  fail_where(state_->file, state_->mark(), joined(state_->path, child_name), message);
 }
 
 std::string ConfigNode::text() const {
@@ -397,7 +414,8 @@ const std::string& ConfigNode::file() const {
   return state_->file;
 }
 int ConfigNode::line() const {
-  return present() && !state_->node.Mark().is_null() ? state_->node.Mark().line + 1 : 0;
+  const YAML::Mark mark = present() ? state_->mark() : YAML::Mark::null_mark();
+  return mark.is_null() ? 0 : mark.line + 1;
 }
 
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {

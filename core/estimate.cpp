@@ -14,8 +14,11 @@ constexpr std::int64_t kFormatVersion = 1;
 constexpr std::size_t kPoseValues = 12;  ///< rotation column by column, then translation
 
 void append_pose(std::vector<double>& out, const SE3& T) {
-  out.insert(out.end(), T.linear().data(), T.linear().data() + 9);
-  out.insert(out.end(), T.translation().data(), T.translation().data() + 3);
+  // Copies: the blocks of the 4x4 that a pose is stored in are not contiguous.
+  const Eigen::Matrix3d R = T.linear();
+  const Eigen::Vector3d p = T.translation();
+  out.insert(out.end(), R.data(), R.data() + 9);
+  out.insert(out.end(), p.data(), p.data() + 3);
 }
 
 SE3 pose_at(const std::vector<double>& values, std::size_t i) {

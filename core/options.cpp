@@ -28,7 +28,8 @@ std::string quoted(const std::string& text) {
                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                          "0123456789_-./") == std::string::npos &&
                      std::isalpha(static_cast<unsigned char>(text[0])) && text != "true" && text != "false" &&
-                     text != "null" && text != "yes" && text != "no" && text != "on" && text != "off";
+                     text != "null" && text != "Null" && text != "NULL" && text != "yes" && text != "no" &&
+                     text != "on" && text != "off";
   if (plain) return text;
   std::string out = "\"";
   for (const char c : text) {

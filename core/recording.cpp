@@ -189,6 +189,7 @@ Recording Recording::open(const std::filesystem::path& folder) {
   Recording recording;
   State& state = *recording.state_;
   state.folder = folder;
+  std::string rig_json;
   try {
     const Json manifest = Json::parse(read_file(manifest_file));
     if (manifest.value("format", "") != "tarmac-recording" || manifest.value("version", 0) != kFormatVersion) {
@@ -197,7 +198,9 @@ Recording Recording::open(const std::filesystem::path& folder) {
           manifest_file.string(), manifest.value("format", "?"), manifest.value("version", 0), kFormatVersion));
     }
     state.hash = manifest.at("hash").get<std::string>();
-    state.rig = rig_from_json(manifest.at("rig").dump(), manifest_file.string());
+    // The text that was hashed, not what a Rig would be written as: a rotation's last digit may change on the way.
+    rig_json = manifest.at("rig").dump(2);
+    state.rig = rig_from_json(rig_json, manifest_file.string());
   } catch (const nlohmann::json::exception& error) {
     throw DamagedFile(
         fmt::format("{}: cannot be read: {}; make the recording again", manifest_file.string(), error.what()));
@@ -209,7 +212,7 @@ Recording Recording::open(const std::filesystem::path& folder) {
   };
   for (std::size_t k = 0; k < state.rig.lidars.size(); ++k) open_stream(state.lidars, lidar_file(k));
   for (std::size_t k = 0; k < state.rig.imus.size(); ++k) open_stream(state.imus, imu_file(k));
-  if (recording_hash(rig_to_json(state.rig), digests) != state.hash) {
+  if (recording_hash(rig_json, digests) != state.hash) {
     throw DamagedFile(
         fmt::format("{}: its streams do not match the hash in manifest.json; make the recording again", name));
   }

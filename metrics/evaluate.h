@@ -1,10 +1,21 @@
 /// Estimate x ground truth -> Evaluation.
+///
+/// Series, of the headline estimate (causal, or final for a batch method); x and y of paths are world coordinates:
+///   path_true, path_estimate               [m] at the sweeps' ends, the estimate after first-pose alignment (NaN: not
+///   scored) error_vs_time, error_vs_distance       position error after first-pose alignment drift_vs_distance error
+///   of the motion along stretches of a length, with its band reference_error_by_phase               where in the sweep
+///   the estimate bends, seen from the sweep's reference instant:
+///                                          the one to show; without deskewing it rises to v x T at the far end
+///   deskew_error_by_phase, point_error_by_phase   the same after the sweep's best fit; and with drift
+///   deskew_error_vs_time, sweep_time_vs_time, iterations_vs_time      a value a sweep
+///   speed_vs_time, yaw_rate_vs_time        the true motion
 #pragma once
 
 #include "core/diagnostics.h"
 #include "core/estimate.h"
 #include "core/recording.h"
 #include "metrics/evaluation.h"
+#include "metrics/sweep_source.h"
 #include "sim/truth/ground_truth.h"
 
 namespace tarmac::metrics {
@@ -15,9 +26,25 @@ struct EvaluateSettings {
   int phase_bins = 32;
 };
 
-/// All metrics. `recording` gives the points, `truth` where they were; `timing` may be nullptr.
+/// The series of error by sweep phase that a report shows.
+inline constexpr const char* kHeadlinePhaseSeries = "reference_error_by_phase";
+
+struct EvaluationInput {
+  const core::Estimate& estimate;
+  SweepSource sweeps;
+  const sim::truth::GroundTruth& truth;
+  const std::vector<sim::truth::PointLabels>& labels;                ///< one a sweep of the recording
+  const core::RunTiming* timing = nullptr;                           ///< nullptr: cost is n/a
+  const std::vector<core::SweepDiagnostics>* diagnostics = nullptr;  ///< nullptr: iterations are n/a
+};
+
+/// All metrics: every one of the registry has a row, with a value or the reason why not. A function of the input alone:
+/// the same bytes at any number of threads. Throws InputError when truth and recording do not belong together.
+Evaluation evaluate(const EvaluationInput& input, const EvaluateSettings& settings);
+
+/// The same with labels from the truth's folder. `timing` and `diagnostics` may be nullptr.
 Evaluation evaluate(const core::Estimate& estimate, const core::Recording& recording,
                     const sim::truth::GroundTruth& truth, const core::RunTiming* timing,
-                    const EvaluateSettings& settings);
+                    const EvaluateSettings& settings, const std::vector<core::SweepDiagnostics>* diagnostics = nullptr);
 
 }  // namespace tarmac::metrics

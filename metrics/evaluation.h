@@ -1,13 +1,12 @@
 /// The result of comparing one estimate with the truth: rows for tables, series for figures.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace tarmac::metrics {
 
@@ -17,12 +16,12 @@ struct Row {
   std::optional<double> value;      ///< empty = n/a
   std::string unit;
   std::optional<double> ci_low, ci_high;
-  std::string status = "ok";        ///< ok | n/a: reason | failed: reason
+  std::string status = "ok";  ///< ok | ok: what to know of the value | n/a: reason | failed: reason
 };
 
 /// y over x, NaN where a value is missing.
 struct Series {
-  std::string name;  ///< "error_by_phase"
+  std::string name;              ///< "reference_error_by_phase"; evaluate.h lists all
   std::string x_label, y_label;  ///< with units: "distance [m]"
   std::vector<double> x, y;
   std::vector<double> low, high;  ///< a band, or empty
@@ -41,17 +40,20 @@ struct Evaluation {
   std::string estimator;
   std::string status = "ok";  ///< ok | not_initialised | failed | crashed | timed out | no output ...
   std::string message;
-  double coverage = 0;        ///< share of sweeps that are scored
+  double coverage = 0;  ///< share of sweeps that are scored
   std::vector<Row> rows;
   std::vector<Series> series;
-  MapSample map;              ///< stored apart, as map_sample.bin
+  MapSample map;  ///< stored apart, as map_sample.bin
 
+  /// nullptr when there is none of that name.
   const Row* row(const std::string& metric, const std::string& estimate = "causal") const;
   const Series* find(const std::string& name) const;
 };
 
-/// evaluation.json (and map_sample.bin beside it when there is a map).
+/// evaluation.json; cost.json beside it with what differs from run to run (times, memory), so that equal runs give
+/// equal bytes in evaluation.json; and map_sample.bin when there is a map. Numbers come back exactly; NaN is null.
 void save_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation);
+/// Throws InputError when there is no evaluation.json, DamagedFile when a file is not whole.
 Evaluation load_evaluation(const std::filesystem::path& folder);
 
 }  // namespace tarmac::metrics

@@ -7,14 +7,16 @@
 namespace tarmac::metrics {
 
 struct MetricEntry {
-  const char* name;       ///< "ate_se3_rmse_m"
-  const char* unit;       ///< "m"
+  const char* name;  ///< "ate_se3_rmse_m"
+  const char* unit;  ///< "m"
   bool lower_is_better;
   const char* alignment;  ///< "first valid reference pose", "SE(3)", "none needed", ...
   const char* meaning;    ///< one sentence
   const char* source;     ///< definition or paper
+  const char* family;     ///< coverage | trajectory | points | effort | cost; cost = no two runs have the same
 };
 
+/// In the order in which tables show them.
 std::span<const MetricEntry> metrics();
 const MetricEntry* find_metric(const std::string& name);
 

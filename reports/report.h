@@ -20,11 +20,11 @@ struct ReportRun {
 
 struct ReportInput {
   std::string title;
-  std::string why;                    ///< the scenario's reason and what would be a surprise
+  std::string why;  ///< the scenario's reason and what would be a surprise
   std::string surprise;
-  std::vector<ReportRun> runs;        ///< several = seeds of one scenario
+  std::vector<ReportRun> runs;           ///< several = seeds of one scenario
   const scenes::Scene* scene = nullptr;  ///< of the first run, for top view and stills; nullptr = none
-  core::Time picture_time;            ///< at which actors stand in the pictures
+  core::Time picture_time;               ///< at which actors stand in the pictures
 };
 
 /// Renders figures and stills and writes the page, whole or not at all.

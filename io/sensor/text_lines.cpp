@@ -60,7 +60,7 @@ std::optional<std::int64_t> nanoseconds(std::string_view text) {
     exponent += *written;
     text = text.substr(0, exponent_at);
   }
-  std::string digits;
+  std::string digits(1, '0');  // so that something stays when all digits are cut off
   bool point_seen = false;
   for (const char c : text) {
     if (c == '.' && !point_seen) {
@@ -72,17 +72,16 @@ std::optional<std::int64_t> nanoseconds(std::string_view text) {
       return std::nullopt;
     }
   }
-  if (digits.empty()) return std::nullopt;
+  if (digits.size() == 1) return std::nullopt;
   // digits * 10^exponent: append zeros, or cut digits off and round by the first one cut.
   bool round_up = false;
   if (exponent >= 0) {
     digits.append(static_cast<std::size_t>(exponent), '0');
   } else {
     const std::size_t cut = static_cast<std::size_t>(-exponent);
-    digits.insert(0, cut > digits.size() ? cut - digits.size() : 0, '0');
+    if (cut >= digits.size()) digits = std::string(cut + 1 - digits.size(), '0') + digits;
     round_up = digits[digits.size() - cut] >= '5';
     digits.resize(digits.size() - cut);
-    if (digits.empty()) digits = "0";
   }
   const std::optional<std::int64_t> value = parsed<std::int64_t>(digits);
   if (!value || *value == std::numeric_limits<std::int64_t>::max()) return std::nullopt;

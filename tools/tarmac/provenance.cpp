@@ -97,13 +97,20 @@ std::string shell_command(const std::vector<std::string>& words) {
     const bool plain = !word.empty() && word.find_first_not_of(
                                             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                                             "0123456789_-+=.,/:@%") == std::string::npos;
-    std::string quoted = word;
-    if (!plain) {
-      quoted = "'";
-      for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-      quoted += "'";
+    if (!command.empty()) command += ' ';
+    if (plain) {
+      command += word;
+      continue;
     }
-    command += (command.empty() ? "" : " ") + quoted;
+    command += '\'';
+    for (const char c : word) {
+      if (c == '\'') {
+        command += "'\\''";
+      } else {
+        command += c;
+      }
+    }
+    command += '\'';
   }
   return command;
 }

@@ -52,7 +52,7 @@ sim::SimulationInput build_world(const scenarios::Scenario& scenario, std::uint6
   input.motion = sim::truth::make_motion(scenario.motion, scenario.duration(), input.scene->ground, seed);
   input.rig = scenario.rig;
   input.resolved_scenario = resolved;
-  input.resolved_motion = "motion:\n" + sim::truth::resolve_motion(scenario.motion);
+  input.resolved_motion = sim::truth::resolve_motion(scenario.motion);
   return input;
 }
 

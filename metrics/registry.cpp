@@ -1,0 +1,106 @@
+#include "metrics/registry.h"
+
+namespace tarmac::metrics {
+
+namespace {
+
+constexpr const char* kFirst = "first valid reference pose";
+constexpr const char* kNone = "none needed";
+constexpr const char* kZhang = "Zhang and Scaramuzza 2018, A Tutorial on Quantitative Trajectory Evaluation";
+constexpr const char* kSturm = "Sturm et al. 2012, A Benchmark for the Evaluation of RGB-D SLAM Systems";
+constexpr const char* kUmeyama = "Umeyama 1991, Least-Squares Estimation of Transformation Parameters";
+constexpr const char* kOwn = "metrics/README.md";
+
+constexpr MetricEntry kMetrics[] = {
+    {"coverage_percent", "%", false, kNone,
+     "Share of the recording's sweeps that are scored: neither initialising nor lost, and inside the truth's span.",
+     kOwn, "coverage"},
+    {"point_coverage_percent", "%", false, kNone,
+     "Share of the recording's finite points that are scored: their sweep is, and the estimate covers their firing "
+     "time.",
+     kOwn, "coverage"},
+
+    {"ate_first_pose_rmse_m", "m", true, kFirst,
+     "Position error at the sweeps' reference instants after carrying the first estimated pose onto the true one; RMS.",
+     kSturm, "trajectory"},
+    {"ate_first_pose_median_m", "m", true, kFirst, "Median of the same position errors.", kSturm, "trajectory"},
+    {"ate_first_pose_max_m", "m", true, kFirst, "Largest of the same position errors.", kSturm, "trajectory"},
+    {"ate_first_pose_rot_rmse_deg", "deg", true, kFirst,
+     "Rotation error at the reference instants after carrying the first estimated pose onto the true one; RMS angle.",
+     kZhang, "trajectory"},
+    {"ate_yaw_pos_rmse_m", "m", true, "yaw and position",
+     "RMS position error after the best turn about the vertical and the best shift; a map that is not gravity-aligned "
+     "is levelled by its first pose before.",
+     kZhang, "trajectory"},
+    {"ate_se3_rmse_m", "m", true, "SE(3)", "RMS position error after the best rigid motion of the whole path.",
+     kUmeyama, "trajectory"},
+    {"ate_se3_median_m", "m", true, "SE(3)", "Median of the same position errors.", kUmeyama, "trajectory"},
+    {"ate_se3_max_m", "m", true, "SE(3)", "Largest of the same position errors.", kUmeyama, "trajectory"},
+    {"ate_sim3_rmse_m", "m", true, "Sim(3)",
+     "RMS position error after the best rigid motion and scale: what is left is shape.", kUmeyama, "trajectory"},
+    {"ate_none_rmse_m", "m", true, "none",
+     "RMS position error as it stands; n/a for a method that is given no initial pose.", kSturm, "trajectory"},
+
+    {"rpe_1sweep_trans_rmse_m", "m", true, kNone,
+     "Error of the motion from one sweep's reference instant to the next, translation part; RMS.", kSturm,
+     "trajectory"},
+    {"rpe_1sweep_rot_rmse_deg", "deg", true, kNone, "The same, rotation part.", kSturm, "trajectory"},
+    {"rpe_10sweep_trans_rmse_m", "m", true, kNone, "Error of the motion over ten sweeps, translation part; RMS.",
+     kSturm, "trajectory"},
+    {"rpe_10sweep_rot_rmse_deg", "deg", true, kNone, "The same, rotation part.", kSturm, "trajectory"},
+    {"rpe_1s_trans_rmse_m", "m", true, kNone,
+     "Error of the motion over one second (to the reference instant nearest to it), translation part; RMS.", kSturm,
+     "trajectory"},
+    {"rpe_1s_rot_rmse_deg", "deg", true, kNone, "The same, rotation part.", kSturm, "trajectory"},
+    {"rpe_10m_trans_rmse_m", "m", true, kNone,
+     "Error of the motion over ten metres of true path (to the first reference instant not before), translation part; "
+     "RMS.",
+     kSturm, "trajectory"},
+    {"rpe_10m_rot_rmse_deg", "deg", true, kNone, "The same, rotation part.", kSturm, "trajectory"},
+
+    {"end_error_m", "m", true, kFirst, "Position error at the last scored reference instant.", kOwn, "trajectory"},
+    {"end_error_percent", "%", true, kFirst,
+     "End error over the length of the true path between first and last scored pose.", kOwn, "trajectory"},
+    {"path_length_m", "m", false, kNone, "Length of the true path between the first and the last scored pose.", kOwn,
+     "trajectory"},
+
+    {"point_error_rms_m", "m", true, kFirst,
+     "How far from its true place the estimate puts each static point, at the point's own firing time; RMS.", kOwn,
+     "points"},
+    {"point_error_p50_m", "m", true, kFirst, "Median of the same point errors.", kOwn, "points"},
+    {"point_error_p95_m", "m", true, kFirst, "95th percentile of the same point errors.", kOwn, "points"},
+    {"point_error_max_m", "m", true, kFirst, "Largest of the same point errors.", kOwn, "points"},
+    {"point_error_se3_rms_m", "m", true, "SE(3)",
+     "The same RMS after the rigid motion that fits the reference positions best.", kOwn, "points"},
+    {"point_error_moving_rms_m", "m", true, kFirst, "The same RMS over points on moving objects.", kOwn, "points"},
+    {"deskew_error_rms_m", "m", true, "each sweep's own best rigid motion",
+     "How far a sweep is bent: distance of its static points from their true places after the sweep's best rigid "
+     "motion; RMS over all points. Large when motion during the sweep is not undone.",
+     kOwn, "points"},
+    {"sweep_shear_rms_m", "m", true, kNone,
+     "Error of the motion from a sweep's first to its last firing, translation part; RMS over sweeps.", kOwn, "points"},
+    {"sweep_shear_rot_rms_deg", "deg", true, kNone, "The same, rotation part.", kOwn, "points"},
+
+    {"iterations_mean", "1", true, kNone, "Mean number of the method's iterations a sweep.", kOwn, "effort"},
+    {"sweep_time_p50_ms", "ms", true, kNone, "Median wall time the method took for a sweep.", kOwn, "cost"},
+    {"sweep_time_p95_ms", "ms", true, kNone, "95th percentile of the wall time for a sweep.", kOwn, "cost"},
+    {"sweep_time_p99_ms", "ms", true, kNone, "99th percentile of the wall time for a sweep.", kOwn, "cost"},
+    {"sweep_cpu_p50_ms", "ms", true, kNone, "Median processor time, all threads, for a sweep.", kOwn, "cost"},
+    {"real_time_factor", "1", false, kNone, "Recorded seconds per second of the run: above 1 the method keeps up.",
+     kOwn, "cost"},
+    {"peak_memory_mb", "MB", true, kNone, "Largest memory of the method's process.", kOwn, "cost"},
+};
+
+}  // namespace
+
+std::span<const MetricEntry> metrics() {
+  return kMetrics;
+}
+
+const MetricEntry* find_metric(const std::string& name) {
+  for (const MetricEntry& entry : kMetrics)
+    if (name == entry.name) return &entry;
+  return nullptr;
+}
+
+}  // namespace tarmac::metrics

@@ -1,0 +1,211 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "metrics/registry.h"
+#include "reports/page.h"
+
+namespace tarmac::reports {
+
+namespace {
+
+using nlohmann::json;
+
+/// Series that belong to the truth: the same for every estimator of a run, so written once.
+const std::set<std::string> kTruthSeries = {"path_true", "speed_vs_time", "yaw_rate_vs_time"};
+/// Samples that a page holds at most, over all series: about 3 MB of text. Longer series are thinned.
+constexpr std::size_t kMaxSamples = 160000;
+constexpr std::size_t kMinSamplesEach = 200;
+
+/// Six significant digits: finer than any line can show, and half the size.
+json number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
+}
+
+json thinned(const std::vector<double>& values, std::size_t step) {
+  json list = json::array();
+  for (std::size_t i = 0; i < values.size(); i += step) list.push_back(number(values[i]));
+  return list;
+}
+
+json to_json(const metrics::Series& series, std::size_t max_samples) {
+  const std::size_t step = std::max<std::size_t>(1, (series.x.size() + max_samples - 1) / max_samples);
+  json out = {{"x_label", series.x_label},    {"y_label", series.y_label},   {"step", step}, {"first", 0},
+              {"x", thinned(series.x, step)}, {"y", thinned(series.y, step)}};
+  if (!series.low.empty() && !series.high.empty()) {
+    out["low"] = thinned(series.low, step);
+    out["high"] = thinned(series.high, step);
+  }
+  return out;
+}
+
+json to_json(const metrics::Row& row) {
+  json out = {{"estimate", row.estimate}, {"metric", row.metric}, {"unit", row.unit}, {"status", row.status}};
+  out["value"] = row.value ? number(*row.value) : json();
+  if (row.ci_low && row.ci_high) {
+    out["low"] = number(*row.ci_low);
+    out["high"] = number(*row.ci_high);
+  }
+  return out;
+}
+
+std::size_t samples_each(const std::vector<ReportRun>& runs) {
+  std::size_t count = 0;
+  for (const auto& run : runs) {
+    for (const auto& evaluation : run.evaluations) count += evaluation.series.size();
+  }
+  return std::max(kMinSamplesEach, kMaxSamples / std::max<std::size_t>(1, count));
+}
+
+/// Where a reader finds the log: below the folder that the report was made from, never an absolute path.
+std::string log_of(const ReportInput& input, const ReportRun& run, const std::string& estimator) {
+  const std::filesystem::path inside = std::filesystem::path(estimator) / "log.txt";
+  return (input.runs.size() > 1 ? run.folder.filename() / inside : inside).generic_string();
+}
+
+struct Collected {
+  json runs = json::array(), truth = json::object();
+  std::vector<std::string> estimators;
+  std::vector<std::uint64_t> seeds;
+  std::set<std::string> metrics;
+};
+
+template <class T>
+void remember(std::vector<T>& list, const T& value) {
+  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+}
+
+void collect(const ReportInput& input, const ReportRun& run, const metrics::Evaluation& evaluation,
+             std::size_t max_samples, Collected& into) {
+  remember(into.estimators, evaluation.estimator);
+  remember(into.seeds, evaluation.seed);
+  json rows = json::array(), series = json::object();
+  for (const auto& row : evaluation.rows) {
+    rows.push_back(to_json(row));
+    into.metrics.insert(row.metric);
+  }
+  json& truth = into.truth[std::to_string(evaluation.seed)];
+  if (truth.is_null()) truth = json::object();
+  for (const auto& entry : evaluation.series) {
+    const bool of_truth = kTruthSeries.contains(entry.name);
+    // A method that failed early may know less of the truth than another.
+    if (of_truth && truth.contains(entry.name) && truth[entry.name]["x"].size() >= entry.x.size()) continue;
+    (of_truth ? truth : series)[entry.name] = to_json(entry, max_samples);
+  }
+  into.runs.push_back({{"estimator", evaluation.estimator},
+                       {"seed", evaluation.seed},
+                       {"status", evaluation.status},
+                       {"message", evaluation.message},
+                       {"coverage", number(evaluation.coverage)},
+                       {"rows", rows},
+                       {"series", series},
+                       {"log", log_of(input, run, evaluation.estimator)}});
+}
+
+json metric_table(const std::set<std::string>& names) {
+  json table = json::object();
+  for (const auto& name : names) {
+    const metrics::MetricEntry* const entry = metrics::find_metric(name);
+    if (!entry) continue;
+    table[name] = {
+        {"name", entry->name},           {"unit", entry->unit},       {"lower_is_better", entry->lower_is_better},
+        {"alignment", entry->alignment}, {"meaning", entry->meaning}, {"source", entry->source}};
+  }
+  return table;
+}
+
+json to_json(const Picture& picture) {
+  return {{"src", fmt::format("data:{};base64,{}", picture.media_type, base64(picture.bytes))},
+          {"width_px", picture.width_px},
+          {"height_px", picture.height_px}};
+}
+
+json color_ramp() {
+  json colors = json::array();
+  constexpr int kSteps = 24;
+  for (int k = 0; k <= kSteps; ++k) {
+    const Eigen::Vector3f color = 255 * error_color(double(k) / kSteps);
+    colors.push_back(
+        fmt::format("#{:02x}{:02x}{:02x}", std::lround(color.x()), std::lround(color.y()), std::lround(color.z())));
+  }
+  return colors;
+}
+
+json to_json(const Pictures& pictures) {
+  json out = {{"note", pictures.note}, {"maps", json::array()}};
+  if (pictures.overview) out["overview"] = to_json(*pictures.overview);
+  if (pictures.top) {
+    out["top"] = to_json(*pictures.top);
+    out["top"]["min_m"] = {pictures.top_view.min_m.x(), pictures.top_view.min_m.y()};
+    out["top"]["max_m"] = {pictures.top_view.max_m.x(), pictures.top_view.max_m.y()};
+  }
+  for (const auto& map : pictures.maps) {
+    out["maps"].push_back(to_json(map.picture));
+    out["maps"].back()["estimator"] = map.estimator;
+    out["maps"].back()["seed"] = map.seed;
+  }
+  out["scale"] = {{"low_m", pictures.scale.low_m}, {"high_m", pictures.scale.high_m}, {"colors", color_ramp()}};
+  return out;
+}
+
+/// The command that makes the report's runs again: the first that a provenance names.
+std::string command_of(const std::vector<ReportRun>& runs) {
+  for (const auto& run : runs) {
+    const json content = json::parse(run.provenance_json, nullptr, /*allow_exceptions=*/false);
+    if (!content.is_object() || !content.contains("command")) continue;
+    const json& command = content["command"];
+    if (command.is_string()) return command.get<std::string>();
+    std::string text;
+    for (const auto& word : command) {
+      text += (text.empty() ? "" : " ") + (word.is_string() ? word.get<std::string>() : word.dump());
+    }
+    return text;
+  }
+  return "";
+}
+
+/// No "<" may stand in a script element's data: "</script>" would end it.
+std::string inside_script(const json& data) {
+  // Bytes that are no UTF-8 (an estimator's message may hold any) are shown as replacement characters.
+  const std::string text = data.dump(-1, ' ', /*ensure_ascii=*/false, json::error_handler_t::replace);
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string page_data(const ReportInput& input, const Pictures& pictures) {
+  Collected collected;
+  const std::size_t max_samples = samples_each(input.runs);
+  json provenance = json::array();
+  for (const auto& run : input.runs) {
+    for (const auto& evaluation : run.evaluations) collect(input, run, evaluation, max_samples, collected);
+    if (run.provenance_json.empty()) continue;
+    const std::string folder = input.runs.size() > 1 ? run.folder.filename().string() : "";
+    provenance.push_back({{"folder", folder}, {"text", run.provenance_json}});
+  }
+  std::sort(collected.seeds.begin(), collected.seeds.end());
+  return inside_script({{"title", input.title},
+                        {"estimators", collected.estimators},
+                        {"seeds", collected.seeds},
+                        {"metrics", metric_table(collected.metrics)},
+                        {"runs", collected.runs},
+                        {"truth", collected.truth},
+                        {"pictures", to_json(pictures)},
+                        {"command", command_of(input.runs)},
+                        {"provenance", provenance}});
+}
+
+}  // namespace tarmac::reports

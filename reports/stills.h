@@ -1,0 +1,67 @@
+/// Still pictures of a scene and of a map on it. VTK stays behind this header.
+///
+/// The look is fixed: same scene, time and size, same pixels (software rasteriser; see offscreen_gl.h).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/time.h"
+#include "metrics/evaluation.h"
+#include "reports/offscreen_gl.h"
+#include "scenes/scene.h"
+
+namespace tarmac::reports {
+
+/// RGB, 8 bits each, row by row from the top left.
+struct Image {
+  int width_px = 0, height_px = 0;
+  std::vector<std::uint8_t> rgb;
+};
+std::string to_png(const Image& image);
+std::string to_jpeg(const Image& image, int quality_percent);
+
+/// What a picture from straight above shows: x to the right, y up. Every pixel is a square of the world.
+struct TopView {
+  Eigen::Vector2d min_m, max_m;  ///< world, of the outer edges of the outer pixels
+  int width_px = 0, height_px = 0;
+};
+/// The rectangle [min_m, max_m], its height rounded to a whole pixel.
+TopView top_view(const Eigen::Vector2d& min_m, const Eigen::Vector2d& max_m, int width_px);
+
+/// Logarithmic colour scale of errors: below `low_m` the first colour, above `high_m` the last.
+struct ErrorScale {
+  double low_m = 0.01, high_m = 1;
+};
+/// 1-2-5 steps around the 5 % and 99 % quantiles over all maps, so that pictures of one report compare.
+ErrorScale error_scale(const std::vector<const metrics::MapSample*>& maps);
+/// sRGB in [0, 1] at a place of the scale in [0, 1]; NaN is grey.
+Eigen::Vector3f error_color(double place);
+/// Where an error stands on the scale, clipped to [0, 1].
+double place_on(const ErrorScale& scale, double error_m);
+
+/// Draws one scene again and again. Throws RenderingUnavailable when this machine cannot draw.
+class Stills {
+ public:
+  Stills(const scenes::Scene& scene, core::Time t, const std::string& egl_library = kEglLibrary);
+  ~Stills();
+  Stills(const Stills&) = delete;
+  Stills& operator=(const Stills&) = delete;
+
+  /// Actors are put where they stand at t.
+  void set_time(core::Time t);
+  /// A bird's view from the south-west that holds the scene's rectangle of interest.
+  Image overview(int width_px, int height_px);
+  Image top(const TopView& view);
+  /// The scene dimmed, with the static points of a map over it coloured by their error. Same camera as `overview`.
+  Image map(const metrics::MapSample& sample, const ErrorScale& scale, int width_px, int height_px);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tarmac::reports

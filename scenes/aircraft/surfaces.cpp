@@ -1,0 +1,196 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "scenes/aircraft/aircraft.h"
+
+namespace tarmac::scenes {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double deg = std::numbers::pi / 180;
+constexpr int points_a_side = 14;
+
+/// Half thickness of a NACA four-digit section over chord share s, for thickness 1 (Jacobs et al. 1933), with 0.2 % of
+/// chord left at the trailing edge.
+double half_thickness(double s) {
+  const double shape =
+      0.2969 * std::sqrt(s) - 0.1260 * s - 0.3516 * s * s + 0.2843 * s * s * s - 0.1036 * s * s * s * s;
+  return 5 * shape;
+}
+
+/// Section in its own plane: chord along -x from the leading edge, thickness along `up`.
+Ring airfoil(const Vector3d& leading_edge, double chord_m, double thickness, const Vector3d& up) {
+  Ring ring;
+  const auto point = [&](double s, double side) {
+    const double half = (half_thickness(s) * thickness + 0.001 * s) * chord_m;
+    return Vector3d(leading_edge - Vector3d::UnitX() * (s * chord_m) + up * (side * half));
+  };
+  const auto share = [](int k) { return 0.5 * (1 - std::cos(std::numbers::pi * k / points_a_side)); };
+  for (int k = points_a_side; k >= 0; --k) ring.push_back(point(share(k), 1));  // over the top to the nose
+  for (int k = 1; k <= points_a_side; ++k) ring.push_back(point(share(k), -1));
+  return ring;
+}
+
+/// A station along the span: leading edge, chord, thickness share, direction of thickness.
+struct SpanStation {
+  Vector3d leading_edge;
+  double chord_m, thickness;
+  Vector3d up;
+};
+
+std::vector<SpanStation> wing_stations(const AircraftType& type, const SurfacePlan& plan) {
+  std::vector<SpanStation> stations;
+  const double slope = std::tan(plan.le_sweep_deg * deg), rise = std::tan(plan.dihedral_deg * deg);
+  const Vector3d up = Vector3d(0, -std::sin(plan.dihedral_deg * deg), std::cos(plan.dihedral_deg * deg));
+  const auto add = [&](double y) {
+    const bool inboard = y <= plan.kink_y_m;
+    const double y0 = inboard ? plan.root_y_m : plan.kink_y_m, y1 = inboard ? plan.kink_y_m : plan.tip_y_m;
+    const double c0 = inboard ? plan.root_chord_m : plan.kink_chord_m,
+                 c1 = inboard ? plan.kink_chord_m : plan.tip_chord_m;
+    const double chord = c0 + (c1 - c0) * (y - y0) / (y1 - y0);
+    const double t = std::max(0.0, (y - plan.root_y_m) / (plan.tip_y_m - plan.root_y_m));
+    const double le_x = plan.root_le_x_m + (y - plan.root_y_m) * slope;
+    stations.push_back({Vector3d(-le_x, y, plan.root_z_m + (y - plan.root_y_m) * rise), chord,
+                        plan.thickness_root + t * (plan.thickness_tip - plan.thickness_root), up});
+  };
+  // From inside the fuselage outward.
+  const double from = plan.root_y_m > 0 ? plan.root_y_m / 2 : 0;
+  const auto span = [&](double y0, double y1, int n) {
+    for (int k = 0; k < n; ++k) add(y0 + (y1 - y0) * k / n);
+  };
+  span(from, plan.kink_y_m, 8);
+  if (plan.tip_y_m > plan.kink_y_m) span(plan.kink_y_m, plan.tip_y_m, 16);
+  add(plan.tip_y_m);
+  (void)type;
+  return stations;
+}
+
+/// The sharklet: the span bends upward over the first third of its rise, then goes on straight, so that its outermost
+/// point is the type's half span.
+void append_sharklet(std::vector<SpanStation>& stations, const AircraftType& type) {
+  const SpanStation tip = stations.back();
+  const double tip_chord = 0.42 * tip.chord_m, thickness = 0.08;
+  const double reach = type.span_m / 2 - tip.leading_edge.y() - 0.5 * thickness * tip_chord - 0.002;
+  const double rise = type.device.rise_m, sweep = std::tan(type.device.sweep_deg * deg);
+  const double start = std::atan2(-tip.up.y(), tip.up.z());  // direction of span, from horizontal
+  // A quadratic Bezier from the tip along its own direction, then up: p(u) in the y-z plane.
+  const Eigen::Vector2d p0(0, 0), p1(0.75 * reach, 0.75 * reach * std::tan(start)), p2(reach, rise);
+  constexpr int n = 14;
+  Eigen::Vector2d before = p0;
+  double arc = 0;
+  for (int k = 1; k <= n; ++k) {
+    const double u = static_cast<double>(k) / n;
+    const Eigen::Vector2d p = (1 - u) * (1 - u) * p0 + 2 * u * (1 - u) * p1 + u * u * p2;
+    const Eigen::Vector2d d = (2 * (1 - u) * (p1 - p0) + 2 * u * (p2 - p1)).normalized();
+    arc += (p - before).norm();
+    before = p;
+    stations.push_back({Vector3d(tip.leading_edge.x() - 0.62 * arc * sweep, tip.leading_edge.y() + p.x(),
+                                 tip.leading_edge.z() + p.y()),
+                        tip.chord_m + (tip_chord - tip.chord_m) * u, tip.thickness + (thickness - tip.thickness) * u,
+                        Vector3d(0, -d.y(), d.x())});
+  }
+}
+
+/// Slat noses are bare metal, the box grey; the device wears the livery.
+void loft_surface(MeshBuilder& b, const std::vector<SpanStation>& stations, std::size_t livery_from, MaterialId livery,
+                  MaterialId body) {
+  std::vector<Ring> rings;
+  for (const SpanStation& s : stations) rings.push_back(airfoil(s.leading_edge, s.chord_m, s.thickness, s.up));
+  add_loft(b, rings, [&](std::size_t i, std::size_t j) {
+    if (i >= livery_from) return livery;
+    return std::abs(static_cast<int>(j) - points_a_side) <= 3 ? MaterialId::polished_aluminium : body;
+  });
+}
+
+/// The fairing where wing and body meet: a flat-bottomed pod below the fuselage.
+void add_belly_fairing(MeshBuilder& b, const AircraftType& type) {
+  const SurfacePlan& w = type.wing;
+  const double from = w.root_le_x_m - 2.2, to = w.root_le_x_m + w.root_chord_m + 2.2;
+  const double low = type.floor_z_m + 1e-3, half = w.root_y_m;
+  std::vector<Ring> rings;
+  constexpr int n = 24, around = 20;
+  for (int i = 0; i <= n; ++i) {
+    const double s = static_cast<double>(i) / n, x = from + (to - from) * s;
+    const double swell = std::pow(std::max(0.02, std::sin(std::numbers::pi * s)), 0.35);
+    double bottom = 1e9;  // of the fuselage over the fairing
+    for (const FuselageStation& station : type.stations) bottom = std::min(bottom, station.bottom_m);
+    const double depth = (low + bottom - w.root_z_m - 0.10) * -1;
+    Ring ring;
+    for (int j = 0; j < around; ++j) {
+      const double a = 2 * std::numbers::pi * j / around, c = std::cos(a), d = std::sin(a);
+      const double squarish = 1 / std::pow(std::pow(std::abs(c), 2.8) + std::pow(std::abs(d), 2.8), 1 / 2.8);
+      ring.emplace_back(-x, 1.04 * half * swell * squarish * c,
+                        w.root_z_m + 0.1 + (d < 0 ? depth + 0.1 : 0.55) * swell * squarish * d);
+    }
+    rings.push_back(std::move(ring));
+  }
+  b.use(MaterialId::aircraft_white_topcoat);
+  add_loft(b, rings);
+}
+
+/// Canoe fairings of the flap tracks, under the trailing edge.
+void add_flap_tracks(MeshBuilder& b, const std::vector<SpanStation>& stations) {
+  b.use(MaterialId::aircraft_grey);
+  for (const std::size_t k : {std::size_t{11}, std::size_t{14}, std::size_t{17}}) {
+    const SpanStation& s = stations[k];
+    const Vector3d aft =
+        s.leading_edge - Vector3d::UnitX() * (0.62 * s.chord_m) - Vector3d::UnitZ() * (0.06 * s.chord_m);
+    const double length = 0.62 * s.chord_m, r = 0.055 * s.chord_m;
+    std::vector<Ring> rings;
+    for (const auto& [along, size] : {std::pair{0.0, 0.15}, {0.15, 0.7}, {0.4, 1.0}, {0.7, 0.75}, {1.0, 0.08}}) {
+      Ring ring;
+      for (int j = 0; j < 10; ++j) {
+        const double a = 2 * std::numbers::pi * j / 10;
+        ring.emplace_back(aft - Vector3d(along * length, -r * size * std::cos(a),
+                                         0.04 * along * length - 1.4 * r * size * std::sin(a)));
+      }
+      rings.push_back(std::move(ring));
+    }
+    add_loft(b, rings);
+  }
+}
+
+}  // namespace
+
+void add_wings(MeshBuilder& b, const AircraftType& type) {
+  std::vector<SpanStation> stations = wing_stations(type, type.wing);
+  const std::size_t livery_from = stations.size();
+  if (type.device.kind == "sharklet") {
+    append_sharklet(stations, type);
+  } else if (type.device.kind != "none") {
+    throw core::InputError(type.name + ": wing device '" + type.device.kind + "' is not known; known: sharklet, none");
+  }
+  for (const bool right : {false, true}) {
+    b.mirror_y(right);
+    loft_surface(b, stations, livery_from, MaterialId::aircraft_blue_topcoat, MaterialId::aircraft_grey);
+    add_flap_tracks(b, stations);
+  }
+  b.mirror_y(false);
+  add_belly_fairing(b, type);
+}
+
+void add_tail(MeshBuilder& b, const AircraftType& type) {
+  const std::vector<SpanStation> half = wing_stations(type, type.tailplane);
+  for (const bool right : {false, true}) {
+    b.mirror_y(right);
+    loft_surface(b, half, half.size(), MaterialId::aircraft_grey, MaterialId::aircraft_grey);
+  }
+  b.mirror_y(false);
+
+  const Fin& fin = type.fin;
+  const double slope = std::tan(fin.le_sweep_deg * deg);
+  std::vector<SpanStation> stations;
+  constexpr int n = 12;
+  for (int k = -2; k <= n; ++k) {  // from inside the fuselage
+    const double s = static_cast<double>(k) / n, h = s * fin.height_m;
+    stations.push_back({Vector3d(-(fin.le_x_m + h * slope), 0, fin.root_z_m + h),
+                        fin.root_chord_m + s * (fin.tip_chord_m - fin.root_chord_m), fin.thickness, Vector3d::UnitY()});
+  }
+  loft_surface(b, stations, 0, MaterialId::aircraft_blue_topcoat, MaterialId::aircraft_blue_topcoat);
+}
+
+}  // namespace tarmac::scenes

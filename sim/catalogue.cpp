@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "sim/imu/imu_model.h"
+#include "sim/rig_options.h"
+#include "sim/simulate.h"
+
+namespace tarmac::sim {
+namespace {
+
+using namespace core;
+
+std::string timing_text(const lidar::Profile& p) {
+  if (p.by_encoder())
+    return fmt::format("columns fired at fixed angles; modes (columns x Hz): {}, default {}", fmt::join(p.modes, ", "),
+                       p.default_mode);
+  return fmt::format("a firing cycle every {} us; {} to {} Hz, default {} Hz", p.cycle_us, p.min_rate_hz, p.max_rate_hz,
+                     p.default_rate_hz);
+}
+
+std::string noise_text(const lidar::Profile& p) {
+  std::string text;
+  for (std::size_t k = 0; k < p.sigma_m.size(); ++k)
+    text += fmt::format("{}{} m from {} m", k > 0 ? ", " : "", p.sigma_m[k], p.sigma_from_m[k]);
+  return text;
+}
+
+}  // namespace
+
+std::vector<CatalogueEntry> lidar_catalogue() {
+  std::vector<CatalogueEntry> entries;
+  for (const std::string& name : lidar::profile_names()) entries.push_back({name, lidar::profile(name).summary});
+  return entries;
+}
+
+std::string describe_lidar(const std::string& name) {
+  const lidar::Profile& p = lidar::profile(name);
+  std::string text = fmt::format("{}: {}\n", p.name, p.summary);
+  text += fmt::format("  timing      {}\n", timing_text(p));
+  text += fmt::format("  sweep       begins at azimuth {} deg (clockwise from sensor +x), turns clockwise\n",
+                      p.azimuth_start_deg);
+  text += fmt::format("  range       {} to {} m, step {} m; {} m on 10 %, {} m on 80 % reflectance\n", p.min_range_m,
+                      p.max_range_m, p.range_step_m, p.range_10_percent_m, p.range_80_percent_m);
+  text += fmt::format("  noise       {} (1 sigma); constant per channel {} m\n", noise_text(p), p.channel_bias_sigma_m);
+  text += fmt::format("  beams from  a circle of radius {} m, {} m above the sensor frame\n", p.beam_origin_radius_m,
+                      p.beam_origin_height_m);
+  text +=
+      fmt::format("  source      {}\n\n  channel  ring  elevation_deg  azimuth_offset_cw_deg  firing_us\n", p.source);
+  for (std::size_t c = 0; c < p.channels(); ++c)
+    text += fmt::format("  {:7}  {:4}  {:13.2f}  {:21.2f}  {:9.3f}\n", c, static_cast<int>(p.ring[c]),
+                        p.elevation_deg[c], p.azimuth_offset_cw_deg[c], p.firing_us[c]);
+  return text;
+}
+
+std::vector<CatalogueEntry> imu_catalogue() {
+  std::vector<CatalogueEntry> entries;
+  for (const ImuModel& model : imu_models())
+    entries.push_back({std::string(model.name), fmt::format("{} ({})", model.title, model.grade)});
+  return entries;
+}
+
+std::string describe_imu(const std::string& name) {
+  return describe_imu_model(imu_model(name));
+}
+
+std::vector<OptionDescription> describe_rig_options() {
+  RigOptions options;
+  options.has_imu = true;
+  return describe_options(options);
+}
+
+}  // namespace tarmac::sim

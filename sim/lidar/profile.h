@@ -1,0 +1,62 @@
+/// What is known of a spinning LiDAR, as data: profiles/NAME.yaml, one file a sensor.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+
+namespace tarmac::sim::lidar {
+
+/// Angles: azimuth is clockwise seen from above, 0 = sensor +x (forward); elevation is positive up.
+/// Sensor frame: x forward, y left, z up.
+struct Profile {
+  std::string name;
+  std::string summary;
+  std::string source;
+  /// "encoder": columns at fixed angles, all channels of one at once. "clock": a firing cycle every cycle_us.
+  std::string timing = "encoder";
+  std::vector<std::string> modes;  ///< of encoder timing: COLUMNSxRATE
+  std::string default_mode;
+  double default_rate_hz = 10, min_rate_hz = 5, max_rate_hz = 20;  ///< of clock timing
+  double cycle_us = 0;
+  double azimuth_start_deg = 180;
+  double beam_origin_radius_m = 0, beam_origin_height_m = 0;
+  double min_range_m = 0, max_range_m = 0, range_step_m = 0;
+  double range_10_percent_m = 0, range_80_percent_m = 0;
+  double threshold_snr = 0;
+  std::vector<double> sigma_from_m, sigma_m;
+  double channel_bias_sigma_m = 0;
+  std::vector<double> elevation_deg, azimuth_offset_cw_deg, firing_us, ring;  ///< one value a channel
+
+  void visit(core::OptionVisitor& v);
+  std::size_t channels() const { return elevation_deg.size(); }
+  bool by_encoder() const { return timing == "encoder"; }
+  double sigma_at_m(double range_m) const;
+};
+
+struct EmbeddedProfile {
+  const char* name;
+  const char* yaml;
+};
+/// The files under profiles/, as they were when the library was built.
+std::span<const EmbeddedProfile> embedded_profiles();
+
+/// Throws InputError (file, line, field) when the text is no profile or its tables differ in length.
+Profile parse_profile(const std::string& name, const std::string& yaml);
+std::vector<std::string> profile_names();
+/// Throws InputError listing what there is, with did-you-mean.
+const Profile& profile(const std::string& name);
+
+/// How a sensor is run: columns a revolution (encoder timing; 0 for clock timing) and revolutions a second.
+struct Mode {
+  int columns = 0;
+  double rate_hz = 10;
+};
+/// Fills in the sensor's default where 0 is given. Throws InputError listing the modes when the sensor has no such one.
+Mode mode_of(const Profile& profile, int columns, double rate_hz);
+/// "1024x10"
+std::string name_of(const Profile& profile, const Mode& mode);
+
+}  // namespace tarmac::sim::lidar

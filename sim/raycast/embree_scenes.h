@@ -1,0 +1,37 @@
+/// Embree objects with owners. Private to sim/raycast: the only header that names Embree.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/lie.h"
+#include "scenes/scene.h"
+
+namespace tarmac::sim::raycast {
+
+struct ReleaseDevice {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
+using EmbreeScene = std::unique_ptr<RTCSceneTy, ReleaseScene>;
+
+/// Throws std::runtime_error with Embree's reason.
+Device new_device(const std::string& config);
+/// One mesh as a committed scene of its own, to be instanced.
+EmbreeScene mesh_scene(RTCDevice device, const scenes::Mesh& mesh);
+/// A top scene: holds instances only, so that a commit costs next to nothing.
+EmbreeScene top_scene(RTCDevice device);
+/// Adds an instance under `id`, which hits report. `poses` are T_base_mesh at equidistant times, the first at ray time
+/// 0 and the last at 1; one pose stands still.
+void add_instance(RTCDevice device, RTCScene top, RTCScene mesh, unsigned id, std::span<const core::SE3> poses);
+/// Builds the hierarchy. Waits without taking up other work of the thread pool: callers may hold locks.
+void commit(RTCScene scene);
+
+}  // namespace tarmac::sim::raycast

@@ -1,0 +1,27 @@
+/// Sweeps made on many threads and written in order, a few in memory at a time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "core/chunk_file.h"
+#include "core/recording.h"
+#include "scenes/scene.h"
+#include "sim/lidar/sweep_simulator.h"
+
+namespace tarmac::sim {
+
+struct PipelineTotals {
+  std::size_t sweeps = 0, rays = 0, points = 0;
+  double trace_cpu_s = 0;
+};
+
+/// Called after each written sweep, from one thread at a time; what it throws ends the pipeline and comes out of run().
+using AfterSweep = std::function<void(const PipelineTotals& so_far)>;
+
+/// Simulates sweeps [0, count) on `threads` threads, points to `recording`, what they hit to `labels`.
+PipelineTotals run_sweeps(const lidar::SweepSimulator& simulator, const scenes::Scene& scene, std::int64_t count,
+                          int threads, core::RecordingWriter& recording, core::ChunkWriter& labels,
+                          const AfterSweep& after_sweep);
+
+}  // namespace tarmac::sim

@@ -1,0 +1,95 @@
+/// What a `drive` is told: path, speeds, road, vehicle. Defaults: a service van that surveys an apron.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+
+namespace tarmac::sim::truth {
+
+struct StartOptions {
+  double x_m = 0, y_m = 0, heading_deg = 0, speed_m_s = 0;
+  void visit(core::OptionVisitor& v);
+};
+
+/// One piece of the path: either a straight or a turn.
+struct PathPiece {
+  double straight_m = 0;
+  double turn_deg = 0;
+  double radius_m = 8;
+  double blend_m = 4;
+  void visit(core::OptionVisitor& v);
+};
+
+/// One change of speed. It begins at a time or a distance, or ends at a distance; -1 = not given; with none of the
+/// three it begins `wait_s` after the change before it ended.
+struct SpeedEvent {
+  double to_m_s = 0;
+  double peak_m_s2 = 1;
+  double at_s = -1;
+  double at_m = -1;
+  double by_m = -1;
+  double wait_s = 0;
+  void visit(core::OptionVisitor& v);
+};
+
+struct JitterOptions {
+  double speed_fraction_rms = 0.015;
+  double min_wavelength_m = 15;
+  double max_wavelength_m = 90;
+  void visit(core::OptionVisitor& v);
+};
+
+struct WanderOptions {
+  double lateral_rms_m = 0.06;
+  double min_wavelength_m = 22;
+  double max_wavelength_m = 70;
+  void visit(core::OptionVisitor& v);
+};
+
+struct RoadOptions {
+  std::string roughness = "A";
+  int waves = 220;
+  double contact_m = 0.12;
+  double joint_spacing_m = 6;
+  double joint_depth_m = 0.0015;
+  double joint_length_m = 0.16;
+  void visit(core::OptionVisitor& v);
+};
+
+struct SuspensionOptions {
+  double wheelbase_m = 3.0, track_m = 1.6, centre_height_m = 0.5;
+  double heave_hz = 1.4, heave_damping = 0.3;
+  double pitch_hz = 1.6, pitch_damping = 0.3;
+  double roll_hz = 1.6, roll_damping = 0.25;
+  double dive_deg_per_m_s2 = 0.25;
+  double lean_deg_per_m_s2 = 0.45;
+  void visit(core::OptionVisitor& v);
+};
+
+struct VibrationOptions {
+  double idle_hz = 25;
+  double engine_hz_per_m_s = 3;
+  double engine_rms_m_s2 = 0.08;
+  double engine_rms_deg_s = 0.03;
+  double rolling_rms_m_s2 = 0.08;
+  double rolling_rms_deg_s = 0.03;
+  void visit(core::OptionVisitor& v);
+};
+
+struct DriveOptions {
+  StartOptions start;
+  double rest_s = 3;
+  std::vector<PathPiece> path;
+  std::vector<SpeedEvent> speed;
+  double stop_peak_m_s2 = 1.2;
+  JitterOptions jitter;
+  WanderOptions wander;
+  RoadOptions road;
+  SuspensionOptions suspension;
+  VibrationOptions vibration;
+  void visit(core::OptionVisitor& v);
+};
+
+}  // namespace tarmac::sim::truth

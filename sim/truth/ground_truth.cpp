@@ -1,0 +1,124 @@
+#include "sim/truth/ground_truth.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "scenes/registry.h"
+#include "sim/truth/motion.h"
+
+namespace tarmac::sim::truth {
+
+namespace {
+
+using namespace core;
+
+/// The keys of scenario.yaml that the motion hangs on; the file holds others, which are not ours to check.
+struct Basics {
+  std::string name;
+  std::int64_t seed = 0;
+  double duration_s = 0;
+  void visit(OptionVisitor& v) {
+    v("name", name, "of the scenario");
+    v("seed", seed, "of all random draws");
+    v("duration_s", duration_s, "of the motion", {.above = 0});
+  }
+};
+
+Basics read_basics(const ConfigNode& scenario) {
+  for (const char* key : {"name", "seed", "duration_s", "scene", "motion"}) {
+    if (!scenario.child(key).present()) {
+      scenario.fail_at(key, "is missing: a truth folder's scenario.yaml is written by the simulator, in full");
+    }
+  }
+  Basics basics;
+  scenario.read(basics, scenario.keys());
+  return basics;
+}
+
+std::vector<Fault> faults_from_json(const std::string& text, const std::string& where) {
+  try {
+    std::vector<Fault> faults;
+    const nlohmann::json json = nlohmann::json::parse(text);
+    for (const auto& entry : json.at("faults")) {
+      faults.push_back({entry.at("kind").get<std::string>(), entry.at("sensor").get<std::string>(),
+                        entry.at("detail").get<std::string>()});
+    }
+    return faults;
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: the fault log cannot be read: {}", where, error.what()));
+  }
+}
+
+}  // namespace
+
+ChunkData to_chunk(const PointLabels& labels) {
+  std::vector<std::uint8_t> label(labels.label.size());
+  for (std::size_t i = 0; i < label.size(); ++i) label[i] = static_cast<std::uint8_t>(labels.label[i]);
+  ChunkData chunk;
+  chunk.add(std::span<const std::uint8_t>(label));
+  chunk.add(std::span<const std::uint32_t>(labels.instance));
+  chunk.add(std::span<const std::uint8_t>(labels.moving));
+  chunk.add(std::span<const std::int32_t>(labels.t_ns));
+  chunk.add_value(to_ns(labels.begin));
+  chunk.add_value(to_ns(labels.end));
+  return chunk;
+}
+
+PointLabels labels_from_chunk(const ChunkData& chunk) {
+  PointLabels labels;
+  const auto label = chunk.column<std::uint8_t>(0);
+  labels.label.reserve(label.size());
+  for (const std::uint8_t value : label) labels.label.push_back(static_cast<scenes::Label>(value));
+  labels.instance = chunk.column<std::uint32_t>(1);
+  labels.moving = chunk.column<std::uint8_t>(2);
+  labels.t_ns = chunk.column<std::int32_t>(3);
+  labels.begin = time_from_ns(chunk.value<std::int64_t>(4));
+  labels.end = time_from_ns(chunk.value<std::int64_t>(5));
+  const std::size_t size = labels.label.size();
+  if (labels.instance.size() != size || labels.moving.size() != size || labels.t_ns.size() != size) {
+    throw DamagedFile(
+        fmt::format("a chunk of labels has columns of {}, {}, {} and {} points: they must be equally long", size,
+                    labels.instance.size(), labels.moving.size(), labels.t_ns.size()));
+  }
+  return labels;
+}
+
+std::vector<PointLabels> GroundTruth::labels(std::size_t lidar) const {
+  const std::filesystem::path file = folder / fmt::format("lidar{}_labels.chunks", lidar);
+  if (folder.empty() || !std::filesystem::exists(file)) {
+    throw InputError(fmt::format("{}: there are no labels of lidar {}: simulate the scenario again to get them",
+                                 file.string(), lidar));
+  }
+  const ChunkReader reader(file);
+  std::vector<PointLabels> sweeps;
+  sweeps.reserve(reader.size());
+  for (std::size_t i = 0; i < reader.size(); ++i) sweeps.push_back(labels_from_chunk(reader.read(i)));
+  return sweeps;
+}
+
+GroundTruth load_ground_truth(const std::filesystem::path& truth_folder) {
+  const std::filesystem::path scenario = truth_folder / "scenario.yaml", rig = truth_folder / "rig.json";
+  const std::filesystem::path faults = truth_folder / "faults.json";
+  for (const auto& file : {scenario, rig, faults}) {
+    if (std::filesystem::is_regular_file(file)) continue;
+    throw InputError(fmt::format("{}: is no truth folder, since {} is missing: give the `truth` folder of a simulation",
+                                 truth_folder.string(), file.filename().string()));
+  }
+  GroundTruth truth;
+  truth.config = ConfigNode::load(scenario.string());
+  const Basics basics = read_basics(truth.config);
+  truth.scenario = basics.name;
+  truth.seed = static_cast<std::uint64_t>(basics.seed);
+  truth.folder = truth_folder;
+  truth.rig = rig_from_json(read_file(rig), rig.string());
+  truth.faults = faults_from_json(read_file(faults), faults.string());
+  const ConfigNode scene = truth.config.child("scene");
+  truth.motion = make_motion(truth.config.child("motion"), duration_from_s(basics.duration_s),
+                             scenes::scene_of(scene).ground(scene, truth.seed), truth.seed);
+  return truth;
+}
+
+}  // namespace tarmac::sim::truth

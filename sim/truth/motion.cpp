@@ -1,0 +1,128 @@
+#include "sim/truth/motion.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/error.h"
+#include "sim/truth/constant_twist.h"
+#include "sim/truth/drive.h"
+#include "sim/truth/drive_options.h"
+#include "sim/truth/function_class.h"
+
+namespace tarmac::sim::truth {
+
+namespace {
+
+using namespace core;
+using Motion = std::shared_ptr<const SmoothTrajectory>;
+
+template <class Options>
+Options read(const ConfigNode& node) {
+  Options options;
+  node.read(options, {"kind"});
+  return options;
+}
+
+Motion make_twist(const ConfigNode& node, Duration duration, std::shared_ptr<const scenes::Ground>, std::uint64_t) {
+  return make_constant_twist(read<ConstantTwistOptions>(node), duration);
+}
+
+Motion make_straight(const ConfigNode& node, Duration duration, std::shared_ptr<const scenes::Ground>, std::uint64_t) {
+  const auto options = read<StraightOptions>(node);
+  const Eigen::Vector3d v_body = options.start.linear().transpose() * options.v_world_m_s;
+  return make_constant_twist({options.start, v_body, Eigen::Vector3d::Zero()}, duration);
+}
+
+Motion make_still(const ConfigNode& node, Duration duration, std::shared_ptr<const scenes::Ground>, std::uint64_t) {
+  return make_constant_twist({.start = read<StillOptions>(node).start}, duration);
+}
+
+template <class Options>
+std::string resolve(const ConfigNode& node) {
+  return write_options(read<Options>(node), 2);
+}
+
+template <class Options>
+std::vector<OptionDescription> describe() {
+  return describe_options<Options>();
+}
+
+struct Kind {
+  const char* name;
+  Motion (*make)(const ConfigNode&, Duration, std::shared_ptr<const scenes::Ground>, std::uint64_t);
+  std::string (*resolve)(const ConfigNode&);
+  std::vector<OptionDescription> (*describe)();
+  const char* function_class;
+};
+
+/// A new kind of motion is one line here.
+constexpr std::array kinds{
+    Kind{"drive", make_drive, resolve<DriveOptions>, describe<DriveOptions>,
+         "speeds and curvatures change by (1 + tanh(1/(1-u) - 1/u over 2))/2, infinitely differentiable and not "
+         "analytic; "
+         "sines of the distance for ripple, wander, road and tyres, and of the time for the engine; position by "
+         "quadrature; heave, pitch and roll solve an oscillator's equation (degree 7 every ms)"},
+    Kind{"constant-twist", make_twist, resolve<ConstantTwistOptions>, describe<ConstantTwistOptions>,
+         "T(0) Exp(t xi): the class of two-pose screw interpolation, hence a control and not a judge"},
+    Kind{"straight", make_straight, resolve<StraightOptions>, describe<StraightOptions>,
+         "linear in time: the class of every interpolation, hence a control and not a judge"},
+    Kind{"still", make_still, resolve<StillOptions>, describe<StillOptions>,
+         "constant: the class of every interpolation, hence a control and not a judge"},
+};
+
+const Kind* find(const std::string& name) {
+  const auto it = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& kind) { return kind.name == name; });
+  return it == kinds.end() ? nullptr : &*it;
+}
+
+std::string unknown(const std::string& name) {
+  const std::string near = did_you_mean(name, motion_kinds());
+  return fmt::format("there is no motion '{}'{}; there are {}", name,
+                     near.empty() ? "" : fmt::format(" (did you mean {}?)", near), fmt::join(motion_kinds(), ", "));
+}
+
+const Kind& kind_of(const ConfigNode& node) {
+  const std::string name = node.child("kind").scalar("kind");
+  const Kind* kind = find(name);
+  if (!kind) node.fail_at("kind", unknown(name));
+  return *kind;
+}
+
+const Kind& kind_named(const std::string& name) {
+  const Kind* kind = find(name);
+  if (!kind) throw InputError(unknown(name));
+  return *kind;
+}
+
+}  // namespace
+
+std::shared_ptr<const SmoothTrajectory> make_motion(const ConfigNode& node, Duration duration,
+                                                    std::shared_ptr<const scenes::Ground> ground, std::uint64_t seed) {
+  const Kind& kind = kind_of(node);
+  if (duration <= Duration::zero()) throw InputError("a motion needs a duration above 0 s");
+  return kind.make(node, duration, std::move(ground), seed);
+}
+
+std::string resolve_motion(const ConfigNode& node) {
+  const Kind& kind = kind_of(node);
+  return fmt::format("  kind: {}\n{}", kind.name, kind.resolve(node));
+}
+
+std::vector<std::string> motion_kinds() {
+  std::vector<std::string> names;
+  for (const Kind& kind : kinds) names.emplace_back(kind.name);
+  return names;
+}
+
+std::vector<OptionDescription> describe_motion(const std::string& kind) {
+  return kind_named(kind).describe();
+}
+
+std::string motion_function_class(const std::string& kind) {
+  return kind_named(kind).function_class;
+}
+
+}  // namespace tarmac::sim::truth

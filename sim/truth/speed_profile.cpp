@@ -1,0 +1,69 @@
+#include "sim/truth/speed_profile.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/truth/smooth_step.h"
+
+namespace tarmac::sim::truth {
+
+SpeedProfile::SpeedProfile(const DriveOptions& options, double path_length_m, Waves ripple,
+                           std::vector<Problem>& problems)
+    : ripple_(std::move(ripple)) {
+  ripple_at_start_m_ = ripple_.value(0);
+  ramps_.push_back({0, 0, options.start.speed_m_s, 0, options.rest_s});
+  for (std::size_t i = 0; i < options.speed.size(); ++i) add(options.speed[i], i, problems);
+  if (options.stop_peak_m_s2 > 0 && ramps_.back().end_m_s() > 0) {
+    add({.to_m_s = 0, .peak_m_s2 = options.stop_peak_m_s2, .by_m = path_length_m}, options.speed.size(), problems);
+  }
+}
+
+void SpeedProfile::add(const SpeedEvent& event, std::size_t index, std::vector<Problem>& problems) {
+  const Ramp& last = ramps_.back();
+  const double now_s = last.end_s(), here_m = last.end_m(), v_m_s = last.end_m_s();
+  const auto refuse = [&](std::string message) { problems.push_back({index, std::move(message)}); };
+  if ((event.at_s >= 0) + (event.at_m >= 0) + (event.by_m >= 0) > 1) {
+    return refuse("at_s, at_m and by_m exclude each other: give one of them");
+  }
+  Ramp ramp{now_s + event.wait_s, 0, v_m_s, event.to_m_s - v_m_s, 0};
+  ramp.duration_s = smooth_step_peak_slope * std::abs(ramp.change_m_s) / event.peak_m_s2;
+  if (event.at_s >= 0) {
+    ramp.t_s = event.at_s;
+    if (ramp.t_s < now_s) {
+      return refuse(fmt::format("at_s: {} s is before the end of the change before it ({:.3f} s)", event.at_s, now_s));
+    }
+  } else if (event.at_m >= 0 || event.by_m >= 0) {
+    const double need_m = event.by_m >= 0 ? ramp.duration_s * (v_m_s + event.to_m_s) / 2 : 0;
+    const double begin_m = event.by_m >= 0 ? event.by_m - need_m : event.at_m;
+    if (v_m_s <= 0) return refuse("the vehicle stands still here and gets to no distance: give at_s or wait_s");
+    if (begin_m < here_m) {
+      return refuse(
+          fmt::format("the change would have to begin at {:.2f} m, but the one before it ends at {:.2f} m: "
+                      "move it, or raise peak_m_s2",
+                      begin_m, here_m));
+    }
+    ramp.t_s = now_s + (begin_m - here_m) / v_m_s;
+  }
+  ramp.planned_m = here_m + v_m_s * (ramp.t_s - now_s);
+  ramps_.push_back(ramp);
+}
+
+Jet SpeedProfile::at(double t_s) const {
+  auto ramp = std::upper_bound(ramps_.begin(), ramps_.end(), t_s, [](double t, const Ramp& r) { return t < r.t_s; });
+  if (ramp != ramps_.begin()) --ramp;
+  const double since_s = t_s - ramp->t_s;
+  Jet planned{ramp->planned_m + ramp->v_m_s * since_s, ramp->v_m_s, 0, 0};
+  if (since_s >= ramp->duration_s) {
+    // Not through the blend: at rest the distance is then the same number at all times.
+    planned = {ramp->end_m() + ramp->end_m_s() * (t_s - ramp->end_s()), ramp->end_m_s(), 0, 0};
+  } else if (ramp->change_m_s != 0) {
+    const double T = ramp->duration_s, dv = ramp->change_m_s, u = since_s / T;
+    const Jet h = smooth_step(u);
+    planned = planned + Jet{dv * T * smooth_step_integral(u), dv * h.f, dv / T * h.d1, dv / (T * T) * h.d2};
+  }
+  return planned + chain(ripple_.at(planned.f), planned) - Jet{ripple_at_start_m_};
+}
+
+}  // namespace tarmac::sim::truth

@@ -1,0 +1,103 @@
+#include "tools/tarmac/child.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <sstream>
+
+namespace tarmac::tools {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class Child : public testing::Test {
+ protected:
+  ChildResult run(const std::string& script, double timeout_s = 20) {
+    ChildRequest request;
+    request.command = {"sh", "-c", script};
+    request.working_folder = folder_.path();
+    request.log_file = folder_.path() / "log.txt";
+    request.timeout_s = timeout_s;
+    request.on_progress = [this](double fraction, const std::string& note) { progress_.emplace_back(fraction, note); };
+    return run_child(request);
+  }
+  std::string log() const {
+    std::ostringstream text;
+    text << std::ifstream(folder_.path() / "log.txt").rdbuf();
+    return text.str();
+  }
+  PrivateFolder folder_;
+  std::vector<std::pair<double, std::string>> progress_;
+};
+
+TEST_F(Child, ThatEndsWellIsOkAndItsWordsAreInTheLog) {
+  const ChildResult result = run("echo out; echo err >&2; pwd");
+  EXPECT_TRUE(result.ok());
+  EXPECT_THAT(log(), testing::AllOf(HasSubstr("out"), HasSubstr("err"), HasSubstr(folder_.path().string())));
+}
+
+TEST_F(Child, ThatFailsOrCrashesSaysHow) {
+  const ChildResult failed = run("exit 7");
+  EXPECT_EQ(failed.end, ChildResult::End::exited);
+  EXPECT_EQ(failed.code, 7);
+  EXPECT_FALSE(failed.ok());
+  const ChildResult crashed = run("kill -SEGV $$");
+  EXPECT_EQ(crashed.end, ChildResult::End::signalled);
+  EXPECT_EQ(crashed.code, SIGSEGV);
+  EXPECT_THAT(crashed.message, HasSubstr("signal 11"));
+}
+
+TEST_F(Child, ThatHangsIsEndedWithWhateverItStarted) {
+  const ChildResult result = run("(sleep 600; echo survived > survivor) & echo $! > grandchild; sleep 600", 0.3);
+  EXPECT_EQ(result.end, ChildResult::End::timed_out);
+  EXPECT_LT(result.wall_s, 10);
+  pid_t grandchild = 0;
+  std::ifstream(folder_.path() / "grandchild") >> grandchild;
+  ASSERT_GT(grandchild, 0);
+  // The grandchild is dead or a zombie nobody has reaped yet; it runs no more.
+  std::string state;
+  for (int i = 0; i < 100; ++i) {
+    std::ifstream status("/proc/" + std::to_string(grandchild) + "/stat");
+    std::string pid, name;
+    state.clear();
+    status >> pid >> name >> state;
+    if (state.empty() || state == "Z") break;
+    usleep(20000);
+  }
+  EXPECT_TRUE(state.empty() || state == "Z") << state;
+}
+
+TEST_F(Child, ReportsProgressThroughItsOwnDescriptor) {
+  run("echo 'progress 0.25 a quarter' >&3; echo noise >&3; echo 'progress 1 done' >&3");
+  ASSERT_EQ(progress_.size(), 2u);
+  EXPECT_EQ(progress_[0].first, 0.25);
+  EXPECT_EQ(progress_[0].second, "a quarter");
+  EXPECT_EQ(progress_[1].first, 1.0);
+}
+
+TEST_F(Child, ThatDoesNotExistIsNamed) {
+  ChildRequest request;
+  request.command = {"no-such-program-anywhere"};
+  request.working_folder = folder_.path();
+  request.log_file = folder_.path() / "log.txt";
+  const ChildResult result = run_child(request);
+  EXPECT_EQ(result.end, ChildResult::End::not_started);
+  EXPECT_THAT(result.message, HasSubstr("no-such-program-anywhere"));
+}
+
+TEST(PrivateFolder, IsGoneAfterwards) {
+  fs::path path;
+  {
+    PrivateFolder folder;
+    path = folder.path();
+    std::ofstream(path / "file") << "x";
+    EXPECT_TRUE(fs::exists(path));
+  }
+  EXPECT_FALSE(fs::exists(path));
+}
+
+}  // namespace
+}  // namespace tarmac::tools
