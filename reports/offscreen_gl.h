@@ -13,12 +13,14 @@ class RenderingUnavailable : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+inline constexpr const char* kEglLibrary = "libEGL.so.1";
+
 /// EGL's surfaceless platform with Mesa's software rasteriser: the same pixels on every machine with one Mesa version.
 /// The EGL library is opened at run time, so that a machine without it can do everything but draw.
 class OffscreenGl {
  public:
-  /// Throws RenderingUnavailable. Another `egl_library` than the default is for tests.
-  explicit OffscreenGl(const std::string& egl_library = "libEGL.so.1");
+  /// Throws RenderingUnavailable. Another library than kEglLibrary is for tests.
+  explicit OffscreenGl(const std::string& egl_library);
   ~OffscreenGl();
   OffscreenGl(const OffscreenGl&) = delete;
   OffscreenGl& operator=(const OffscreenGl&) = delete;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/offscreen_gl.h"
 #include "reports/report.h"
 #include "reports/stills.h"
 
@@ -32,6 +33,17 @@ struct Pictures {
   ErrorScale scale;
   std::string note;  ///< why pictures are missing; shown in their place
 };
+
+/// Sizes that make a page of a few megabytes.
+struct PictureSettings {
+  int overview_width_px = 1600, overview_height_px = 860;
+  int top_width_px = 2000;
+  int map_width_px = 1200, map_height_px = 700;
+  std::string egl_library = kEglLibrary;
+};
+/// Draws what the input has to show: the scene, the scene from above, and the maps of the first run. Where this machine
+/// cannot draw, the result's note says why and what to install.
+Pictures draw_pictures(const ReportInput& input, const core::Progress& progress, const PictureSettings& settings = {});
 
 /// The whole page. It refers to nothing outside of itself.
 std::string assemble_page(const ReportInput& input, const Pictures& pictures);

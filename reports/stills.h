@@ -11,6 +11,7 @@
 
 #include "core/time.h"
 #include "metrics/evaluation.h"
+#include "reports/offscreen_gl.h"
 #include "scenes/scene.h"
 
 namespace tarmac::reports {
@@ -45,7 +46,7 @@ double place_on(const ErrorScale& scale, double error_m);
 /// Draws one scene again and again. Throws RenderingUnavailable when this machine cannot draw.
 class Stills {
  public:
-  Stills(const scenes::Scene& scene, core::Time t);
+  Stills(const scenes::Scene& scene, core::Time t, const std::string& egl_library = kEglLibrary);
   ~Stills();
   Stills(const Stills&) = delete;
   Stills& operator=(const Stills&) = delete;

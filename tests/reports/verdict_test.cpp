@@ -1,0 +1,78 @@
+// The sentence on top of the page says what the data support, and no more.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "reports/page.h"
+#include "tests/reports/example.h"
+
+namespace tarmac::reports {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+/// One run a seed; end_errors[estimator][seed].
+std::vector<ReportRun> runs(const std::vector<std::pair<std::string, std::vector<double>>>& end_errors) {
+  std::vector<ReportRun> list(end_errors.front().second.size());
+  for (const auto& [name, values] : end_errors) {
+    for (std::size_t s = 0; s < values.size(); ++s) {
+      list[s].evaluations.push_back(example::evaluation(name, s + 1, values[s]));
+    }
+  }
+  return list;
+}
+
+TEST(Verdict, NamesTheLowestMedianAndByHowMuch) {
+  const Verdict v = verdict(runs({{"worse", {0.8, 1.0, 1.2}}, {"better", {0.3, 0.25, 0.2}}}));
+  EXPECT_THAT(v.sentence, StartsWith("better has the lowest end error: 0.25 %"));
+  EXPECT_THAT(v.sentence, HasSubstr("median of 3 seeds, 0.20 % to 0.30 %"));
+  EXPECT_THAT(v.sentence, HasSubstr("4.0 times less than worse with 1.00 %"));
+  EXPECT_THAT(v.note, HasSubstr("do not overlap"));
+}
+
+TEST(Verdict, SaysThatOverlappingRangesSettleNothing) {
+  const Verdict v = verdict(runs({{"a", {0.2, 0.3, 0.6}}, {"b", {0.35, 0.4, 0.5}}}));
+  EXPECT_THAT(v.sentence, StartsWith("a has the lowest"));
+  EXPECT_THAT(v.note, HasSubstr("do not settle which of the two is better"));
+}
+
+TEST(Verdict, DoesNotMakeMuchOfOneSeed) {
+  const Verdict v = verdict(runs({{"a", {0.2}}, {"b", {0.4}}}));
+  EXPECT_THAT(v.note, HasSubstr("one seed"));
+  EXPECT_THAT(v.note, Not(HasSubstr("overlap")));
+}
+
+TEST(Verdict, CountsFailuresAndLeavesTheirValuesOut) {
+  auto list = runs({{"a", {0.2, 0.2}}, {"b", {0.1, 0.1}}});
+  list[0].evaluations[1].status = "crashed";  // its row stays: a broken run may have left one
+  list[1].evaluations[1] = example::failed("b", 2, "timed out", "");
+  const Verdict v = verdict(list);
+  EXPECT_THAT(v.sentence, StartsWith("a ends 0.20 %"));
+  EXPECT_THAT(v.note, HasSubstr("b gave no result"));
+  list[0].evaluations[1].status = "ok";
+  EXPECT_THAT(verdict(list).note, HasSubstr("b gave no result in 1 of 2 runs"));
+}
+
+TEST(Verdict, TakesTheFinalEstimateOfABatchMethod) {
+  auto list = runs({{"batch", {0.1}}, {"online", {0.3}}});
+  for (auto& row : list[0].evaluations[0].rows) row.estimate = "final";
+  EXPECT_THAT(verdict(list).sentence, StartsWith("batch has the lowest end error: 0.10 %"));
+}
+
+TEST(Verdict, NeverDividesByAPerfectEnd) {
+  const Verdict v = verdict(runs({{"truth-replay", {0.0}}, {"b", {0.4}}}));
+  EXPECT_THAT(v.sentence, HasSubstr("b follows with 0.40 %"));
+  EXPECT_THAT(v.sentence, Not(HasSubstr("inf")));
+}
+
+TEST(Verdict, IsPlainWhenNothingCame) {
+  std::vector<ReportRun> list(1);
+  list[0].evaluations.push_back(example::failed("a", 1, "crashed", "boom"));
+  EXPECT_THAT(verdict(list).sentence, StartsWith("No estimator has an end error"));
+  EXPECT_THAT(verdict(list).note, HasSubstr("a gave no result"));
+  EXPECT_THAT(verdict({}).sentence, StartsWith("No estimator has an end error"));
+}
+
+}  // namespace
+}  // namespace tarmac::reports
