@@ -57,7 +57,7 @@ std::vector<Time> sample_times(const LidarSweep& sweep) {
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     if (stamps[i] - times.back() < kClosestSamples && i + 1 < stamps.size()) continue;
     // The last one of a burst too: it must not lie on the long way to the next burst.
-    if (stamps[i - 1] > times.back()) times.push_back(stamps[i - 1]);
+    if (stamps[i] - stamps[i - 1] >= kClosestSamples && stamps[i - 1] > times.back()) times.push_back(stamps[i - 1]);
     if (stamps[i] > times.back()) times.push_back(stamps[i]);
   }
   return times;

@@ -22,9 +22,9 @@ struct KnownError {
 };
 
 /// `truth-replay` when `error` is the default, `truth-with-known-error` else. Reference instant: sweep end. Each sweep
-/// is a segment of poses at its points' stamps (of bursts closer than 100 us the first and the last), with a constant twist
-/// between: exact at these, and off by at most acceleration x (100 us)^2 / 8 at the others. A sweep that the truth does not
-/// cover is `lost`. Throws InputError when a shift leads out of the truth's span.
+/// is a segment of poses at its points' stamps (of bursts closer than 100 us the first and the last), with a constant
+/// twist between: exact at these, and off by at most acceleration x (200 us)^2 / 8 at the others. A sweep that the
+/// truth does not cover is `lost`. Throws InputError when a shift leads out of the truth's span.
 core::Estimate make_control(const sim::truth::GroundTruth& truth, const SweepSource& sweeps,
                             const KnownError& error = {});
 core::Estimate make_control(const sim::truth::GroundTruth& truth, const core::Recording& recording,

@@ -16,8 +16,8 @@ namespace tarmac::metrics {
 using StampedPose = std::pair<core::Time, core::SE3>;
 
 struct ForeignSettings {
-  std::optional<Alignment> alignment;     ///< only this one's ATE; empty: all
-  bool gravity_aligned = false;           ///< the estimate's z axis points up (matters to yaw_pos)
+  std::optional<Alignment> alignment = std::nullopt;  ///< only this one's ATE; empty: all
+  bool gravity_aligned = false;                       ///< the estimate's z axis points up (matters to yaw_pos)
   core::Duration max_gap{1'000'000'000};  ///< true poses farther apart than this do not bridge the time between them
 };
 

@@ -51,6 +51,23 @@ std::vector<ProfilePoint> nacelle_profile(const Engine& e) {
   };
 }
 
+/// Blades in front of the fan disk, pitched by 50 degrees; x along the engine's axis.
+void add_fan_blades(MeshBuilder& b, const Engine& e, const core::SE3& T_aircraft_engine) {
+  constexpr int blades = 20;
+  b.use(MaterialId::exhaust_metal);
+  for (int k = 0; k < blades; ++k) {
+    core::SE3 T = T_aircraft_engine;
+    T.rotate(Eigen::AngleAxisd(2 * std::numbers::pi * k / blades, Vector3d::UnitX()));
+    T.translate(Vector3d(-0.215 * e.length_m, 0, 0));
+    T.rotate(Eigen::AngleAxisd(0.7, Vector3d::UnitZ()));
+    b.at(T);
+    const double r = e.radius_m;
+    add_plate(b, {{-0.05 * r, 0.2 * r}, {0.05 * r, 0.2 * r}, {0.1 * r, 0.76 * r}, {-0.1 * r, 0.76 * r}}, -0.01 * r,
+              0.01 * r);
+  }
+  b.at(core::SE3::Identity());
+}
+
 void add_pylon(MeshBuilder& b, const AircraftType& type, const Engine& e, double axis_z_m) {
   const double x0 = e.lip_x_m + 0.22 * e.length_m, x1 = e.lip_x_m + 1.05 * e.length_m;
   const double top = wing_underside_z_m(type.wing, e.y_m) + 0.12, half = 0.17;
@@ -126,11 +143,11 @@ void add_engines(MeshBuilder& b, const AircraftType& type) {
     b.mirror_y(right);
     for (const Engine& e : type.engines) {
       const double axis_z = e.ground_gap_m + e.radius_m;
-      b.at(place(-e.lip_x_m, e.y_m, axis_z));
       // mirror_y acts before the placement, so the right nacelle is placed by its own y.
-      if (right) b.at(place(-e.lip_x_m, -e.y_m, axis_z));
+      const core::SE3 T_aircraft_engine = place(-e.lip_x_m, right ? -e.y_m : e.y_m, axis_z);
+      b.at(T_aircraft_engine);
       add_lathe(b, nacelle_profile(e), 48);
-      b.at(core::SE3::Identity());
+      add_fan_blades(b, e, T_aircraft_engine);
       add_pylon(b, type, e, axis_z);
     }
   }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "scenes/aircraft/aircraft.h"
 
@@ -94,6 +95,20 @@ enum Line {
 };
 constexpr std::array<int, lines - 1> quads_between{7, 5, 2, 1, 4, 2, 3, 1, 4, 1};
 
+/// Ahead of the windshield and behind the last door nothing needs the lines: there they spread out evenly.
+void spread_at_the_ends(const AircraftType& type, double x_m, std::array<double, lines>& angles) {
+  double last_door = 0;
+  for (const Door& door : type.doors) last_door = std::max(last_door, door.x_m + door.width_m);
+  const double nose = 1 - std::clamp((x_m - 0.3) / (type.cockpit.windshield_from_x_m - 0.35), 0.0, 1.0);
+  const double tail = std::clamp((x_m - last_door) / 3, 0.0, 1.0), share = std::max(nose, tail);
+  const double total = std::accumulate(quads_between.begin(), quads_between.end(), 0);
+  int quads = 0;
+  for (std::size_t k = 1; k + 1 < lines; ++k) {
+    quads += quads_between[k - 1];
+    angles[k] += share * (pi * (quads / total - 0.5) - angles[k]);
+  }
+}
+
 std::array<double, lines> line_angles(const AircraftType& type, const Section& section, double x_m) {
   const CockpitWindows& c = type.cockpit;
   const Door& door = type.doors.front();
@@ -120,6 +135,7 @@ std::array<double, lines> line_angles(const AircraftType& type, const Section& s
   }
   angles[crown] = pi / 2;
   angles[bottom] = -pi / 2;
+  spread_at_the_ends(type, x_m, angles);
   return angles;
 }
 
@@ -203,8 +219,8 @@ MaterialId skin(const AircraftType& type, double x_m, Line line, int side) {
     const double off = std::abs(std::remainder(x_m - w.from_x_m, w.pitch_m));
     if (off < w.width_m / 2) return MaterialId::acrylic_cabin_window;
   }
-  if (x_m > type.length_m - 0.6) return MaterialId::exhaust_metal;
-  return line < hold_low ? MaterialId::aircraft_grey : MaterialId::aircraft_white_topcoat;
+  if (x_m > type.length_m - 0.32) return MaterialId::exhaust_metal;
+  return MaterialId::aircraft_white_topcoat;
 }
 
 }  // namespace

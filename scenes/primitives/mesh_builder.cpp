@@ -129,7 +129,7 @@ void add_frustum(MeshBuilder& b, const Vector3d& p, const Vector3d& q, double ra
 void add_loft(MeshBuilder& b, const std::vector<Ring>& rings, const QuadMaterial& material) {
   const std::size_t first = b.triangle_count();
   std::vector<std::uint32_t> lower = add_vertices(b, rings.front());
-  if (material) b.use(material(0, 0));
+  if (material) b.use(material(0, rings.front().size() / 4));
   add_fan(b, lower, centroid(rings.front()), false);
   for (std::size_t i = 0; i + 1 < rings.size(); ++i) {
     std::vector<std::uint32_t> upper = add_vertices(b, rings[i + 1]);
@@ -181,17 +181,19 @@ void add_lathe_loop(MeshBuilder& b, const std::vector<ProfilePoint>& profile, in
 
 void add_bar(MeshBuilder& b, const std::vector<Vector3d>& line, double radius_m, int segments) {
   std::vector<Ring> rings;
-  Vector3d u, v;
+  Vector3d axis, u, v;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const Vector3d before = i > 0 ? Vector3d((line[i] - line[i - 1]).normalized()) : Vector3d::Zero();
     const Vector3d after = i + 1 < line.size() ? Vector3d((line[i + 1] - line[i]).normalized()) : Vector3d::Zero();
-    const Vector3d axis = (before + after).normalized();
+    const Vector3d next_axis = (before + after).normalized();
     if (i == 0) {
-      complete_frame(axis, u, v);
-    } else {  // carried along, so that the bar does not twist
-      u = (u - axis * axis.dot(u)).normalized();
-      v = axis.cross(u);
+      complete_frame(next_axis, u, v);
+    } else {  // turned along with the axis by the shortest way, so that the bar does not twist
+      const auto turn = Eigen::Quaterniond::FromTwoVectors(axis, next_axis);
+      u = turn * u;
+      v = turn * v;
     }
+    axis = next_axis;
     rings.push_back(circle(line[i], u, v, radius_m, segments));
   }
   add_loft(b, rings);

@@ -76,9 +76,9 @@ class StandRelief final : public Relief {
   double groove_m(double across_m, double along_m, double& d_across, double& d_along) const;
 
   SlabGrid grid_;
-  double joint_depth_m_;
+  double slabs_per_m_, joint_depth_m_;
   std::array<Octave, 3> octaves_;
-  std::array<float, lattice_size * lattice_size> lattice_;
+  std::array<double, lattice_size * lattice_size> lattice_;
 };
 
 }  // namespace tarmac::scenes

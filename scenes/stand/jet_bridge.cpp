@@ -67,10 +67,16 @@ core::SE3 frame_between(const Vector3d& from, const Vector3d& to) {
 void add_canopy_side(MeshBuilder& b, const AircraftType& type, double along_m, double cab_y_m) {
   const double station = type.doors.front().x_m - along_m;
   std::vector<Ring> rings;
-  constexpr int n = 10;
+  constexpr int n = 28;
   for (int k = 0; k <= n; ++k) {
-    const double z = -0.1 + 2.45 * k / n;
-    const double skin = fuselage_half_width_m(type, station, type.floor_z_m + z) + 0.03;
+    const double z = -0.1 + 2.40 * k / n;
+    double skin = 0;  // the largest that the wall's thickness and a step in height meet
+    for (const double d : {-0.05, 0.05}) {
+      for (const double dz : {-0.09, 0.0}) {
+        skin = std::max(skin, fuselage_half_width_m(type, station + d, type.floor_z_m + z + dz));
+      }
+    }
+    skin += 0.02;
     rings.push_back({{along_m - 0.05, skin, z},
                      {along_m + 0.05, skin, z},
                      {along_m + 0.05, cab_y_m, z},
@@ -103,11 +109,13 @@ void add_cab(MeshBuilder& b, const AircraftType& type, const core::SE3& T_world_
   add_frustum(b, {0, pivot, top}, {0, pivot, top + 0.25}, 1.95, 1.80, 40);
   b.use(bellows);
   for (const double x : {-cab_half_m + 0.06, cab_half_m - 0.06}) add_canopy_side(b, type, x, wall_from + 0.05);
-  const double roof_skin = fuselage_half_width_m(type, door.x_m, type.floor_z_m + 2.32) + 0.10;
   std::vector<Ring> roof;
-  for (const double x : {-cab_half_m, cab_half_m}) {
-    roof.push_back(
-        {{x, roof_skin, 2.30}, {x, wall_from + 0.05, 2.55}, {x, wall_from + 0.05, 2.68}, {x, roof_skin, 2.42}});
+  constexpr int n = 8;
+  for (int k = 0; k <= n; ++k) {
+    const double x = cab_half_m * (2.0 * k / n - 1), margin = 0.06;
+    const double low = fuselage_half_width_m(type, door.x_m - x, type.floor_z_m + 2.25) + margin;
+    const double high = fuselage_half_width_m(type, door.x_m - x, type.floor_z_m + 2.38) + margin;
+    roof.push_back({{x, low, 2.28}, {x, wall_from + 0.05, 2.55}, {x, wall_from + 0.05, 2.68}, {x, high, 2.40}});
   }
   add_loft(b, roof);
   b.at(core::SE3::Identity());
@@ -152,9 +160,9 @@ void add_service_stair(MeshBuilder& b, const core::SE3& T_world_tunnel, double a
   for (const double y : {inner, outer}) {
     add_beam(b, {foot_x, y, 0.1}, {-0.1, y, height - 0.12}, 0.05, 0.22);
     add_beam(b, {foot_x, y, 1.15}, {-0.1, y, height + 1.0}, 0.05, 0.05);
-    add_beam(b, {foot_x, y, 0}, {foot_x, y, 1.15}, 0.05, 0.05);
+    add_beam(b, {foot_x, y, -0.15}, {foot_x, y, 1.15}, 0.05, 0.05);
     add_beam(b, {-0.1, y, height - 0.1}, {-0.1, y, height + 1.0}, 0.05, 0.05);
-    add_beam(b, {1.05, y, 0}, {1.05, y, height + 1.0}, 0.07, 0.07);
+    add_beam(b, {1.05, y, -0.15}, {1.05, y, height + 1.0}, 0.07, 0.07);
   }
   add_beam(b, {-0.1, outer, height + 1.0}, {1.05, outer, height + 1.0}, 0.05, 0.05);
   b.at(core::SE3::Identity());

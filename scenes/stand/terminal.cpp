@@ -164,7 +164,7 @@ void add_docking_display(MeshBuilder& b) {
   add_box(b, {-0.8, y - 0.35, 6.0}, {0.8, y + 0.25, 7.3});
   add_box(b, {-0.1, y + 0.25, 6.5}, {0.1, l::facade_y_m, 6.7});
   b.use(gse_chassis);
-  add_patch(b, {-0.7, y - 0.36, 6.1}, {0.7, y - 0.36, 6.1}, {0.7, y - 0.36, 7.2}, {-0.7, y - 0.36, 7.2});
+  add_box(b, {-0.7, y - 0.37, 6.1}, {0.7, y - 0.35, 7.2});
 }
 
 }  // namespace

@@ -41,7 +41,8 @@ Basics read_basics(const ConfigNode& scenario) {
 std::vector<Fault> faults_from_json(const std::string& text, const std::string& where) {
   try {
     std::vector<Fault> faults;
-    for (const auto& entry : nlohmann::json::parse(text).at("faults")) {
+    const nlohmann::json json = nlohmann::json::parse(text);
+    for (const auto& entry : json.at("faults")) {
       faults.push_back({entry.at("kind").get<std::string>(), entry.at("sensor").get<std::string>(),
                         entry.at("detail").get<std::string>()});
     }

@@ -1,6 +1,8 @@
 /// Laws that hold for every estimator there is: a new one joins by being registered.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/files.h"
 #include "estimators/registry.h"
 #include "estimators/run.h"
@@ -131,14 +133,14 @@ TEST_P(EveryEstimator, DescribesAndResolvesEveryOption) {
   EXPECT_EQ(GetParam()->resolve(core::ConfigNode::parse(resolved, "resolved.yaml")), resolved);
 }
 
-INSTANTIATE_TEST_SUITE_P(Registered, EveryEstimator,
-                         testing::ValuesIn(std::vector<const EstimatorEntry*>(estimators().begin(),
-                                                                              estimators().end())),
-                         [](const auto& info) {
-                           std::string name = info.param->name;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+std::string test_name(const testing::TestParamInfo<const EstimatorEntry*>& entry) {
+  std::string name = entry.param->name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Registered, EveryEstimator, testing::ValuesIn(estimators().begin(), estimators().end()),
+                         test_name);
 
 }  // namespace
 }  // namespace tarmac::estimators

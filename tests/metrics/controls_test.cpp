@@ -1,9 +1,10 @@
 // Acceptance: replayed truth gives every metric its floor, a known error its derived value.
+#include "metrics/controls.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "metrics/controls.h"
 #include "metrics/registry.h"
 #include "tests/metrics/fabricate.h"
 #include "tests/metrics/known_answers.h"
@@ -59,8 +60,12 @@ class KnownAnswers : public ::testing::TestWithParam<KnownAnswer (*)(TruthKind)>
   }
 };
 
-TEST_P(KnownAnswers, EveryMetricGivesItsDerivedValueOnAStraightLine) { check(TruthKind::straight); }
-TEST_P(KnownAnswers, EveryMetricGivesItsDerivedValueOnAConstantTwist) { check(TruthKind::circle); }
+TEST_P(KnownAnswers, EveryMetricGivesItsDerivedValueOnAStraightLine) {
+  check(TruthKind::straight);
+}
+TEST_P(KnownAnswers, EveryMetricGivesItsDerivedValueOnAConstantTwist) {
+  check(TruthKind::circle);
+}
 
 std::string name_of_case(const ::testing::TestParamInfo<KnownAnswer (*)(TruthKind)>& info) {
   const char* const kNames[] = {"LeverArm", "YawRateError", "ShiftedSweep", "SpeedScale"};
@@ -81,7 +86,8 @@ Drive wobbly_drive() {
   DriveShape shape{.sweeps = 60, .columns = 64, .column_spacing = Duration(1'500'000)};
   auto motion = std::make_shared<Wobbly>(Time{}, time_from_s(9));
   return make_drive(motion, shape, [&](int k) {
-    std::vector<Target> targets = box(motion->pose(shape.end(k)).translation() + Eigen::Vector3d(40, 20, 2), {60, 50, 5});
+    std::vector<Target> targets =
+        box(motion->pose(shape.end(k)).translation() + Eigen::Vector3d(40, 20, 2), {60, 50, 5});
     targets.push_back({targets.front().p_world + Eigen::Vector3d(1, 2, 0), true});
     return targets;
   });
@@ -110,7 +116,8 @@ TEST(TruthReplay, StaysBelowAMicrometreBetweenItsSamples) {
     LidarSweep& sweep = drive.sweeps[k];
     for (std::size_t i = 0; i < sweep.size(); ++i) {
       const Eigen::Vector3d p_world = motion.pose(sweep.time(i)) * lidar_mount() * sweep.point(i);
-      sweep.t_ns[i] = static_cast<std::int32_t>(drive.labels[k].t_ns[i] / 13 * 11 + static_cast<std::int64_t>(i) * 2304);
+      sweep.t_ns[i] =
+          static_cast<std::int32_t>(drive.labels[k].t_ns[i] / 13 * 11 + static_cast<std::int64_t>(i) * 2304);
       drive.labels[k].t_ns[i] = sweep.t_ns[i];
       const Eigen::Vector3d p = (motion.pose(sweep.time(i)) * lidar_mount()).inverse() * p_world;
       sweep.x_m[i] = static_cast<float>(p.x());

@@ -32,26 +32,26 @@ Kinematics ConstantTwist::at(Time t) const {
 
 Kinematics Wobbly::at(Time time) const {
   const double t = to_s(time);
-  const Wave px = Wave{}.add(30, 0.31, 0.2, t).add(0.02, 41, 0, t), py = Wave{}.add(22, 0.23, 1.0, t).add(0.3, 2.9, 0, t),
+  const Wave px = Wave{}.add(30, 0.31, 0.2, t).add(0.02, 41, 0, t),
+             py = Wave{}.add(22, 0.23, 1.0, t).add(0.3, 2.9, 0, t),
              pz = Wave{}.add(0.4, 0.7, 0.4, t).add(0.001, 90, 0.3, t);
   const Wave yaw = Wave{}.add(1.1, 0.5, 0.3, t).add(0.05, 3.1, 0, t), pitch = Wave{}.add(0.04, 2.2, 1.5, t),
              roll = Wave{}.add(0.05, 1.7, 0.9, t).add(0.002, 30, 0, t);
   Kinematics k;
-  k.T_world_body.linear() = (Eigen::AngleAxisd(yaw.x, Eigen::Vector3d::UnitZ()) *
-                             Eigen::AngleAxisd(pitch.x, Eigen::Vector3d::UnitY()) *
-                             Eigen::AngleAxisd(roll.x, Eigen::Vector3d::UnitX()))
-                                .toRotationMatrix();
+  k.T_world_body.linear() =
+      (Eigen::AngleAxisd(yaw.x, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch.x, Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(roll.x, Eigen::Vector3d::UnitX()))
+          .toRotationMatrix();
   k.T_world_body.translation() = Eigen::Vector3d(px.x, py.x, pz.x);
   k.v_world = Eigen::Vector3d(px.dx, py.dx, pz.dx);
   k.a_world = Eigen::Vector3d(px.ddx, py.ddx, pz.ddx);
   const double sp = std::sin(pitch.x), cp = std::cos(pitch.x), sr = std::sin(roll.x), cr = std::cos(roll.x);
   k.omega_body = {roll.dx - yaw.dx * sp, pitch.dx * cr + yaw.dx * cp * sr, -pitch.dx * sr + yaw.dx * cp * cr};
-  k.alpha_body = {
-      roll.ddx - yaw.ddx * sp - yaw.dx * pitch.dx * cp,
-      pitch.ddx * cr - pitch.dx * roll.dx * sr + yaw.ddx * cp * sr - yaw.dx * pitch.dx * sp * sr +
-          yaw.dx * roll.dx * cp * cr,
-      -pitch.ddx * sr - pitch.dx * roll.dx * cr + yaw.ddx * cp * cr - yaw.dx * pitch.dx * sp * cr -
-          yaw.dx * roll.dx * cp * sr};
+  k.alpha_body = {roll.ddx - yaw.ddx * sp - yaw.dx * pitch.dx * cp,
+                  pitch.ddx * cr - pitch.dx * roll.dx * sr + yaw.ddx * cp * sr - yaw.dx * pitch.dx * sp * sr +
+                      yaw.dx * roll.dx * cp * cr,
+                  -pitch.ddx * sr - pitch.dx * roll.dx * cr + yaw.ddx * cp * cr - yaw.dx * pitch.dx * sp * cr -
+                      yaw.dx * roll.dx * cp * sr};
   return k;
 }
 
@@ -62,7 +62,9 @@ SE3 pose(const Eigen::Vector3d& xyz_m, const Eigen::Vector3d& rotation_vector) {
   return T;
 }
 
-SE3 lidar_mount() { return pose({0.3, -0.1, 1.8}, {0.02, 0.05, 0.7}); }
+SE3 lidar_mount() {
+  return pose({0.3, -0.1, 1.8}, {0.02, 0.05, 0.7});
+}
 
 SweepSource Drive::source() const {
   return {sweeps.size(), [this](std::size_t i) { return sweeps[i]; }, nominal, 0};

@@ -1,7 +1,7 @@
-// The derivations. World: N sweeps of M columns, d apart, each sweep P after the one before; reference instants are sweep
-// ends, and times below count from the first of them: reference k at tau_k = k P, column c of sweep k at
-// t = k P - (M-1-c) d. S = (M-1) d is a sweep's length. Every column sees the corners b of a box around mu_k (b has mean
-// zero, B = mean of its horizontal |b|^2), and one moving point. Truths:
+// The derivations. World: N sweeps of M columns, d apart, each sweep P after the one before; reference instants are
+// sweep ends, and times below count from the first of them: reference k at tau_k = k P, column c of sweep k at t = k P
+// - (M-1-c) d. S = (M-1) d is a sweep's length. Every column sees the corners b of a box around mu_k (b has mean zero,
+// B = mean of its horizontal |b|^2), and one moving point. Truths:
 //   straight  p(t) = p_s + v t, constant attitude                          rho(t) = |p(t) - p_s| = v |t|
 //   circle    yaw rate w, speed u, radius r = u/w, N P w = 2 pi (one turn) rho(t) = 2 r |sin(w t / 2)|
 // m(a) = sin(M a d / 2) / (M sin(a d / 2)) is the mean of exp(i a t) over a sweep's columns, seen from mid-sweep.
@@ -12,21 +12,26 @@
 //   shift s, sweep K x = y + v s (straight); x = O + Rz(w s) (y - O) about the circle's centre O; sweep K only
 //   scale q          x = y + (q - 1) (p(t) - p_s)
 //
-//   metric            lever arm,     lever arm,            yaw rate                        shift            shift                scale
-//                     straight       circle                (rho as above)                  straight         circle               (rho as above)
-//   error at k (ATE)  0              2 c |sin(w tau/2)|    2 sin(e tau/2) rho              v s if k = K     2 r sin(w s/2) if K  |q-1| rho
-//   rotation at k     0              0                     e tau                           0                w s if k = K         0
-//   RPE k -> k+n      0              2 c sin(w n P/2)      2 sin(e n P/2) rho_{k+n}        v s if K is one  2 r sin(w s/2) ditto |q-1| |p_{k+n} - p_k|
-//     rotation        0              0                     e n P                           0                w s ditto            0
-//   point at t, y     0              2 c |sin(w t/2)|      2 sin(e t/2) |y - p_s|          v s in K         2 sin(w s/2)|y-O|    |q-1| rho(t)
-//   reference at t    0              2 c sin(w (S-..)/2)   2 sin(e |t-tau|/2) |y - p_s|    0                0                    |q-1| |p(t) - p(tau)|
-//   deskew            0              c sqrt(1 - m(w)^2)    sqrt(|mu|^2 (1-m^2) + 2B(1-m))  0                0                    |q-1| std of p(t)
-//   shear             0              2 c sin(w S/2)        2 sin(e S/2) rho(tau), e S      0                0                    |q-1| |p(end)-p(begin)|
+//   metric            lever arm,     lever arm,            yaw rate                        shift            shift scale
+//                     straight       circle                (rho as above)                  straight         circle (rho
+//                     as above)
+//   error at k (ATE)  0              2 c |sin(w tau/2)|    2 sin(e tau/2) rho              v s if k = K     2 r sin(w
+//   s/2) if K  |q-1| rho rotation at k     0              0                     e tau                           0 w s
+//   if k = K         0 RPE k -> k+n      0              2 c sin(w n P/2)      2 sin(e n P/2) rho_{k+n}        v s if K
+//   is one  2 r sin(w s/2) ditto |q-1| |p_{k+n} - p_k|
+//     rotation        0              0                     e n P                           0                w s ditto 0
+//   point at t, y     0              2 c |sin(w t/2)|      2 sin(e t/2) |y - p_s|          v s in K         2 sin(w
+//   s/2)|y-O|    |q-1| rho(t) reference at t    0              2 c sin(w (S-..)/2)   2 sin(e |t-tau|/2) |y - p_s|    0
+//   0                    |q-1| |p(t) - p(tau)| deskew            0              c sqrt(1 - m(w)^2)    sqrt(|mu|^2
+//   (1-m^2) + 2B(1-m))  0                0                    |q-1| std of p(t) shear             0              2 c
+//   sin(w S/2)        2 sin(e S/2) rho(tau), e S      0                0                    |q-1| |p(end)-p(begin)|
 // with c the horizontal part of the lever arm, and |y - p_s|, |mu - p_s| horizontal. Why, for the less obvious:
 // - lever arm: A T^ = T_0 C^-1 D C with D = T_0^-1 T; C^-1 D C - D = (R_D - 1) c in translation and 0 in rotation.
-// - lever arm, fits: body positions lie on a circle of radius r' = |(0,-r) + c|, turned, about the same axis; over a full
+// - lever arm, fits: body positions lie on a circle of radius r' = |(0,-r) + c|, turned, about the same axis; over a
+// full
 //   turn the best rigid fit undoes the turn and leaves |r' - r|; a scale undoes that too.
-// - deskew: the box's corners are the same in every column, so a displacement that depends on t alone is uncorrelated with
+// - deskew: the box's corners are the same in every column, so a displacement that depends on t alone is uncorrelated
+// with
 //   them: no rotation can help, the residual is its spread. For the yaw rate, planar Procrustes in complex numbers with
 //   y = mu + b, x = exp(iet) y: sum of |x~|^2 + |y~|^2 - 2 |sum conj(y~) x~| per point = |mu|^2 (1-m^2) + 2 B - 2 m B.
 // Fits of the whole path (se3, sim3) and quantiles: planar Procrustes on complex numbers, and sorting, below.
@@ -53,8 +58,12 @@ constexpr double kRate = 2 * std::numbers::pi / (kN * kP), kRadius = kSpeed / kR
 const Eigen::Vector3d kHalf(12, 7, 3), kBoxOffset(3, 5, 1), kMovingOffset(20, 1, 2);
 constexpr int kShiftedSweep = 17;
 
-double reference_s(int k) { return k * kP; }
-double column_s(int k, int c) { return k * kP - (kM - 1 - c) * kD; }
+double reference_s(int k) {
+  return k * kP;
+}
+double column_s(int k, int c) {
+  return k * kP - (kM - 1 - c) * kD;
+}
 
 /// The path in the horizontal plane, from its position at the first reference instant.
 struct PlanarTruth {
@@ -75,14 +84,16 @@ struct PlanarTruth {
   }
 };
 
-Complex planar(const Eigen::Vector3d& p) { return {p.x(), p.y()}; }
+Complex planar(const Eigen::Vector3d& p) {
+  return {p.x(), p.y()};
+}
 
 struct Setting {
   PlanarTruth truth;
   Drive drive;
-  std::vector<Complex> mu;                        ///< a sweep
-  std::vector<std::vector<Complex>> corners;      ///< a sweep
-  std::vector<Complex> moving;                    ///< a sweep
+  std::vector<Complex> mu;                    ///< a sweep
+  std::vector<std::vector<Complex>> corners;  ///< a sweep
+  std::vector<Complex> moving;                ///< a sweep
 };
 
 Setting make_setting(TruthKind kind) {
@@ -117,7 +128,9 @@ Setting make_setting(TruthKind kind) {
   return s;
 }
 
-double square(double x) { return x * x; }
+double square(double x) {
+  return x * x;
+}
 double mean_of(int n, const std::function<double(int)>& f) {
   double sum = 0;
   for (int k = 0; k < n; ++k) sum += f(k);
@@ -136,7 +149,9 @@ double max_of(int n, const std::function<double(int)>& f) {
   for (int k = 0; k < n; ++k) largest = std::max(largest, f(k));
   return largest;
 }
-double mean_phasor(double rate) { return rate == 0 ? 1 : std::sin(kM * rate * kD / 2) / (kM * std::sin(rate * kD / 2)); }
+double mean_phasor(double rate) {
+  return rate == 0 ? 1 : std::sin(kM * rate * kD / 2) / (kM * std::sin(rate * kD / 2));
+}
 
 /// The best planar fit of zh onto z: z ~ scale turn (zh - zh_mean) + z_mean.
 struct PlanarFit {
@@ -198,10 +213,12 @@ void add_ate(const std::function<double(int)>& error_m, const std::function<doub
 using OverPair = std::function<double(int k, int n)>;
 void add_rpe(const OverPair& trans_m, const OverPair& rot_rad, KnownAnswer& answer) {
   const int ten_metres = static_cast<int>(std::ceil(10 / (kSpeed * kP)));  // sweeps: 21.3 of them, so the 22nd
-  for (const auto& [name, n] : std::map<std::string, int>{{"1sweep", 1}, {"10sweep", 10}, {"1s", 10}, {"10m", ten_metres}}) {
+  for (const auto& [name, n] :
+       std::map<std::string, int>{{"1sweep", 1}, {"10sweep", 10}, {"1s", 10}, {"10m", ten_metres}}) {
     const int steps = n;
     answer.rows["rpe_" + name + "_trans_rmse_m"] = rms_of(kN - n, [&](int k) { return trans_m(k, steps); });
-    answer.rows["rpe_" + name + "_rot_rmse_deg"] = rms_of(kN - n, [&](int k) { return rot_rad(k, steps); }) * kDegPerRad;
+    answer.rows["rpe_" + name + "_rot_rmse_deg"] =
+        rms_of(kN - n, [&](int k) { return rot_rad(k, steps); }) * kDegPerRad;
   }
 }
 
@@ -240,13 +257,23 @@ void add_shape(double deskew_m, double shear_m, double shear_rad, const std::fun
   answer.rows["coverage_percent"] = answer.rows["point_coverage_percent"] = 100;
 }
 
-double from_reference_s(int c) { return (kM - 1 - c) * kD; }
-double from_middle_s(int c) { return (c - (kM - 1) / 2.0) * kD; }
+double from_reference_s(int c) {
+  return (kM - 1 - c) * kD;
+}
+double from_middle_s(int c) {
+  return (c - (kM - 1) / 2.0) * kD;
+}
 /// Spread of exp(i rate t) about its mean, at a column and over all.
-double phasor_residual(double rate, int c) { return std::abs(std::polar(1.0, rate * from_middle_s(c)) - mean_phasor(rate)); }
-double phasor_spread(double rate) { return std::sqrt(1 - square(mean_phasor(rate))); }
+double phasor_residual(double rate, int c) {
+  return std::abs(std::polar(1.0, rate * from_middle_s(c)) - mean_phasor(rate));
+}
+double phasor_spread(double rate) {
+  return std::sqrt(1 - square(mean_phasor(rate)));
+}
 /// Standard deviation of a sweep's column times.
-double column_time_spread() { return kD * std::sqrt((square(kM) - 1) / 12.0); }
+double column_time_spread() {
+  return kD * std::sqrt((square(kM) - 1) / 12.0);
+}
 
 }  // namespace
 
@@ -259,12 +286,15 @@ KnownAnswer lever_arm(TruthKind kind) {
   const auto swing = [&](double dt) { return 2 * c * std::abs(std::sin(w * dt / 2)); };
   add_ate([&](int k) { return swing(reference_s(k)); }, [](int) { return 0.0; }, answer);
   add_rpe([&](int, int n) { return swing(n * kP); }, [](int, int) { return 0.0; }, answer);
-  add_point_errors(s, [&](int, double t, Complex) { return swing(t); }, answer);
-  add_shape(c * phasor_spread(w), swing(kS), 0, [&](int col) { return c * phasor_residual(w, col); },
-            [&](int col) { return swing(from_reference_s(col)); }, answer);
+  add_point_errors(
+      s, [&](int, double t, Complex) { return swing(t); }, answer);
+  add_shape(
+      c * phasor_spread(w), swing(kS), 0, [&](int col) { return c * phasor_residual(w, col); },
+      [&](int col) { return swing(from_reference_s(col)); }, answer);
   // On the straight line the arm is one shift of the world, whatever it is; on the circle it turns with the heading.
   const Complex arm = Complex(lever.x(), lever.y()) * s.truth.forward;
-  add_fits(s, [&](int, double t, Complex y) { return y + arm * std::polar(1.0, w * t); }, answer);
+  add_fits(
+      s, [&](int, double t, Complex y) { return y + arm * std::polar(1.0, w * t); }, answer);
   if (kind == TruthKind::circle) {
     const double change = std::abs(std::abs(Complex(lever.x(), lever.y() - kRadius)) - kRadius);
     for (const char* metric : {"ate_se3_rmse_m", "ate_se3_median_m", "ate_se3_max_m", "ate_yaw_pos_rmse_m"})
@@ -284,7 +314,8 @@ KnownAnswer yaw_rate_error(TruthKind kind) {
   const auto rho = [&](int k) { return s.truth.rho(reference_s(k)); };
   add_ate([&](int k) { return turn(reference_s(k)) * rho(k); }, [&](int k) { return e * reference_s(k); }, answer);
   add_rpe([&](int k, int n) { return turn(n * kP) * rho(k + n); }, [&](int, int n) { return e * n * kP; }, answer);
-  add_point_errors(s, [&](int, double t, Complex y) { return turn(t) * std::abs(y - s.truth.p_start); }, answer);
+  add_point_errors(
+      s, [&](int, double t, Complex y) { return turn(t) * std::abs(y - s.truth.p_start); }, answer);
   const double B = square(kHalf.x()) + square(kHalf.y()), m = mean_phasor(e);
   const double mu = rms_of(kN, [&](int k) { return std::abs(s.mu[k] - s.truth.p_start); });
   const double corner = std::sqrt(mu * mu + B);
@@ -293,8 +324,8 @@ KnownAnswer yaw_rate_error(TruthKind kind) {
       [&](int c) { return std::hypot(phasor_residual(e, c) * mu, turn(from_middle_s(c)) * std::sqrt(B)); },
       [&](int c) { return turn(from_reference_s(c)) * corner; }, answer);
   add_fits(
-      s,
-      [&](int, double t, Complex y) { return s.truth.p_start + std::polar(1.0, e * t) * (y - s.truth.p_start); }, answer);
+      s, [&](int, double t, Complex y) { return s.truth.p_start + std::polar(1.0, e * t) * (y - s.truth.p_start); },
+      answer);
   answer.drive = std::move(s.drive);
   return answer;
 }
@@ -335,7 +366,8 @@ KnownAnswer speed_scale(TruthKind kind) {
   const bool turns = kind == TruthKind::circle;
   add_ate([&](int k) { return excess * s.truth.rho(reference_s(k)); }, [](int) { return 0.0; }, answer);
   add_rpe([&](int, int n) { return excess * s.truth.chord(n * kP); }, [](int, int) { return 0.0; }, answer);
-  add_point_errors(s, [&](int, double t, Complex) { return excess * s.truth.rho(t); }, answer);
+  add_point_errors(
+      s, [&](int, double t, Complex) { return excess * s.truth.rho(t); }, answer);
   add_shape(
       excess * (turns ? kRadius * phasor_spread(kRate) : kSpeed * column_time_spread()), excess * s.truth.chord(kS), 0,
       [&](int c) {

@@ -16,8 +16,8 @@ struct KnownAnswer {
   std::string name;
   Drive drive;
   KnownError error;
-  std::map<std::string, double> rows;                 ///< by metric
-  std::map<std::string, std::vector<double>> phase;   ///< by series, one a column
+  std::map<std::string, double> rows;                ///< by metric
+  std::map<std::string, std::vector<double>> phase;  ///< by series, one a column
 };
 
 KnownAnswer lever_arm(TruthKind kind);

@@ -189,7 +189,7 @@ TEST_F(Program, BadInputIsRefusedWithFileLineAndField) {
   };
   scenario("model: vlp-16", "model: vlp16");
   expect_refused({"run", "bad.yaml", "-o", "bad"},
-                 AllOf(HasSubstr("bad.yaml:12"), HasSubstr("rig.lidar.model"), HasSubstr("vlp-16")));
+                 AllOf(HasSubstr("bad.yaml:13"), HasSubstr("rig.lidar.model"), HasSubstr("vlp-16")));
   scenario("kind: stand", "kind: stant");
   expect_refused({"run", "bad.yaml", "-o", "bad"},
                  AllOf(HasSubstr("bad.yaml:5"), HasSubstr("scene.kind"), HasSubstr("stand")));
@@ -207,6 +207,7 @@ TEST_F(Program, BadInputIsRefusedWithFileLineAndField) {
   expect_refused({"evaluate", "--truth", "short.yaml", "--estimate", "short.yaml"}, HasSubstr("short.yaml"));
   expect_refused({"describe", "sensor", "vlp-61"}, HasSubstr("vlp-16"));
   expect_refused({"fly"}, HasSubstr("fly"));
+  expect_refused({"simulat"}, HasSubstr("did you mean 'simulate'"));
   EXPECT_FALSE(fs::exists(path("bad"))) << "something was written for a scenario that is refused";
 }
 

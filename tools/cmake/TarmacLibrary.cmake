@@ -46,14 +46,20 @@ function(tarmac_program target)
   target_link_libraries(${target} PRIVATE ${ARG_LINKS})
 endfunction()
 
-# One program of tests. LABEL is unit (all of them together stay below a minute) or slow.
+# One program of tests. LABEL is unit (all of them together stay below a minute) or slow. With WHOLE it runs as one test
+# of ctest's, for tests that share something dear.
 function(tarmac_test target)
-  cmake_parse_arguments(ARG "" "LABEL" "SEES;SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "WHOLE" "LABEL" "SEES;SOURCES;LINKS" ${ARGN})
   if(NOT ARG_LABEL MATCHES "^(unit|slow)$")
     message(FATAL_ERROR "${target}: LABEL is unit or slow")
   endif()
   tarmac_program(${target} SEES ${ARG_SEES} SOURCES ${ARG_SOURCES} LINKS ${ARG_LINKS} GTest::gmock GTest::gtest_main)
-  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${ARG_LABEL})
+  if(ARG_WHOLE)
+    add_test(NAME ${target} COMMAND ${target})
+    set_tests_properties(${target} PROPERTIES LABELS ${ARG_LABEL})
+  else()
+    gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${ARG_LABEL})
+  endif()
 endfunction()
 
 # Writes the table of a registry, so that adding an entry is one line in a CMake list: no static-initialisation order,

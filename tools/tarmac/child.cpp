@@ -157,8 +157,9 @@ ChildResult run_child(const ChildRequest& request) {
     ::wait4(child, &status, 0, &usage);
     throw;
   }
-  // Whatever the child left running in its group ends with it.
+  // Whatever the child left running in its group ends with it; what it said last is still in the pipe.
   ::kill(-child, SIGKILL);
+  progress.wait_and_read();
 
   const auto seconds = [](const timeval& t) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);

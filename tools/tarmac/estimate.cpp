@@ -34,6 +34,8 @@ Source find_source(const fs::path& from, const fs::path& out, const Console& con
     if (fs::is_directory(from / "truth")) source.truth = from / "truth";
     if (fs::is_regular_file(from / "provenance.json")) source.provenance = load_provenance(from / "provenance.json");
   } else if (io::is_plain(from)) {
+    fs::create_directories(out);
+    fs::remove(RunFolder{out}.provenance());
     source.recording = out / "recording";
     io::import_plain(from, source.recording, console.progress("import"));
   } else {
@@ -67,10 +69,10 @@ int estimate_command(const EstimateArguments& arguments, const CommonArguments& 
   const Console console(common.quiet);
   const auto requests = request_estimators(arguments.estimators, blocks_of(arguments));
   const RunFolder run{arguments.out};
-  fs::create_directories(run.root);
-  fs::remove(run.provenance());
   Source source = find_source(arguments.recording, run.root, console);
   const core::Recording recording = core::Recording::open(source.recording);
+  fs::create_directories(run.root);
+  fs::remove(run.provenance());
 
   const auto outcomes =
       run_estimators(requests, source.recording, run.root, {common.threads(), arguments.diagnostics}, console);

@@ -1,9 +1,11 @@
 // The `tarmac` program: its command line. What the commands do is in the files named after them.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <functional>
 
+#include "core/config.h"
 #include "core/error.h"
 #include "tools/tarmac/build_info.h"
 #include "tools/tarmac/commands.h"
@@ -122,6 +124,15 @@ void add_commands(CLI::App& app, Arguments& a) {
   }
 }
 
+std::string no_such_command(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  const std::string guess = core::did_you_mean(word, names);
+  return fmt::format("there is no command '{}'{}; there are {}", word,
+                     guess.empty() ? "" : fmt::format(" (did you mean '{}'?)", guess), fmt::join(names, ", "));
+}
+
 int run_main(int argc, char** argv) {
   Arguments a;
   a.common.words.assign(argv, argv + argc);
@@ -133,6 +144,10 @@ int run_main(int argc, char** argv) {
   add_commands(app, a);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    if (argc < 2 || argv[1][0] == '-') return app.exit(error) == 0 ? 0 : kBadUsage;
+    fmt::print(stderr, "error: {}\n", no_such_command(app, argv[1]));
+    return kBadUsage;
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
     return code == 0 ? 0 : kBadUsage;
