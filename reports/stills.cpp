@@ -265,6 +265,8 @@ struct Stills::State {
   }
 
   void place(core::Time t) {
+    if (placed && t == time) return;
+    placed = true;
     time = t;
     for (std::size_t i = 0; i < actors.size(); ++i) {
       actors[i]->SetUserMatrix(to_vtk(T_world_mesh(scene.instances[i]).matrix()));
@@ -446,6 +448,7 @@ struct Stills::State {
   Eigen::Vector2d light_min = Eigen::Vector2d::Zero();
   double light_size_m = 0;
   core::Time time;
+  bool placed = false;
   double ground_z_m = 0;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
 };
