@@ -14,8 +14,12 @@ struct RunResult {
 };
 
 /// Defined outcomes of bad data: non-finite points are dropped (counted in the log); a sweep that then has none is
-/// `empty`; a sweep that begins before its predecessor's end is dropped as `out_of_order`; an IMU sample not later than
-/// its predecessor is dropped; an estimator whose sensors are absent ends with RunStatus::not_initialised.
+/// `empty` (for a method that needs LiDAR); a sweep that begins before its predecessor's end is dropped as
+/// `out_of_order`; an IMU sample that is not finite or not later than its predecessor is dropped; an estimator whose
+/// sensors are absent ends with RunStatus::not_initialised; one that throws, or returns a pose that is not finite or a
+/// motion that overlaps the last one's, ends with RunStatus::failed and keeps what it gave until then. Of several
+/// LiDARs or IMUs the first is used. Bad options throw InputError; whatever `progress` throws ends the run.
+/// A sweep's time includes that of the IMU samples since the one before, and leaves out reading and decoding.
 RunResult run_estimator(const core::Recording& recording, const EstimatorEntry& entry, const core::ConfigNode& options,
                         const EstimatorContext& context, const core::Progress& progress);
 

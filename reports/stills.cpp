@@ -11,14 +11,12 @@
 #include <vtkFloatArray.h>
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkImageData.h>
-#include <vtkJPEGWriter.h>
 #include <vtkLight.h>
 #include <vtkLogger.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
-#include <vtkPNGWriter.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
@@ -34,6 +32,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+
+#include "reports/ground_light.h"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
 
@@ -51,8 +51,9 @@ const Eigen::Vector3d kSun = Eigen::Vector3d(-0.62, -0.55, 0.80).normalized();  
 constexpr int kSupersampling = 2;  ///< pixels are averaged over 2 x 2: edges without stairs
 constexpr int kShadowPixels = 2048;
 constexpr double kGroundRadius_m = 1500;
+constexpr double kFramedWidth = 0.8;
 constexpr double kTallest_m = 14;  ///< what the bird's view leaves room for above the ground
-const Eigen::Vector3d kBirdDirection = Eigen::Vector3d(-0.62, -1.0, 0.56).normalized();  ///< from the scene to the eye
+const Eigen::Vector3d kBirdDirection = Eigen::Vector3d(-0.62, -1.0, 0.50).normalized();  ///< from the scene to the eye
 constexpr double kFieldOfView_deg = 28;
 
 /// Debian's GLEW asks for an X display that is not there and needs none: VTK reports that as an error each time a
@@ -186,94 +187,7 @@ vtkSmartPointer<vtkMatrix4x4> to_vtk(const Eigen::Matrix4d& T) {
   return matrix.Get();
 }
 
-/// Averages squares of `factor` pixels and puts the first row on top (OpenGL's is at the bottom).
-Image reduce(const unsigned char* rgb, int width_px, int height_px, int factor) {
-  Image image{width_px / factor, height_px / factor, {}};
-  image.rgb.resize(std::size_t(3) * image.width_px * image.height_px);
-  for (int y = 0; y < image.height_px; ++y) {
-    for (int x = 0; x < image.width_px; ++x) {
-      for (int channel = 0; channel < 3; ++channel) {
-        int sum = 0;
-        for (int k = 0; k < factor * factor; ++k) {
-          const std::size_t row = height_px - 1 - (y * factor + k / factor);
-          sum += rgb[3 * (row * width_px + x * factor + k % factor) + channel];
-        }
-        image.rgb[3 * (std::size_t(y) * image.width_px + x) + channel] =
-            static_cast<std::uint8_t>((sum + factor * factor / 2) / (factor * factor));
-      }
-    }
-  }
-  return image;
-}
-
-vtkSmartPointer<vtkImageData> to_vtk(const Image& image) {
-  vtkNew<vtkImageData> data;
-  data->SetDimensions(image.width_px, image.height_px, 1);
-  data->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  const std::size_t row_bytes = std::size_t(3) * image.width_px;
-  for (int y = 0; y < image.height_px; ++y) {
-    std::memcpy(data->GetScalarPointer(0, image.height_px - 1 - y, 0), image.rgb.data() + y * row_bytes, row_bytes);
-  }
-  return data.Get();
-}
-
-/// Light on the ground, one byte a pixel, first row at the bottom (south), like a texture.
-struct GroundLight {
-  int size_px = 0;
-  std::vector<float> value;
-
-  /// Three box filters in both directions: near enough to a Gaussian with this radius.
-  void blur(int radius_px) {
-    std::vector<float> line(size_px);
-    for (int pass = 0; pass < 6; ++pass) {
-      const std::size_t along = pass % 2 ? size_px : 1, across = pass % 2 ? 1 : size_px;
-      for (int k = 0; k < size_px; ++k) {
-        float sum = 0;
-        const auto at = [&](int i) -> float& { return value[k * across + std::clamp(i, 0, size_px - 1) * along]; };
-        for (int i = -radius_px; i <= radius_px; ++i) sum += at(i);
-        for (int i = 0; i < size_px; ++i) {
-          line[i] = sum / static_cast<float>(2 * radius_px + 1);
-          sum += at(i + radius_px + 1) - at(i - radius_px);
-        }
-        for (int i = 0; i < size_px; ++i) at(i) = line[i];
-      }
-    }
-  }
-};
-
-/// Moves every point along `direction` onto the plane z = height + gradient . (xy - at).
-Eigen::Matrix4d project_onto(const Eigen::Vector3d& direction, const Eigen::Vector2d& at, double height_m,
-                             const Eigen::Vector2d& gradient) {
-  // p' = p - direction (n.p - c) / n.direction, with the plane n.p = c.
-  const Eigen::Vector3d n(-gradient.x(), -gradient.y(), 1);
-  const double c = height_m - gradient.dot(at);
-  Eigen::Matrix4d M = Eigen::Matrix4d::Identity();
-  M.topLeftCorner<3, 3>() -= direction * n.transpose() / n.dot(direction);
-  M.topRightCorner<3, 1>() = direction * c / n.dot(direction);
-  return M;
-}
-
-template <class Writer>
-std::string encode(Writer* writer, const Image& image) {
-  writer->SetInputData(to_vtk(image));
-  writer->WriteToMemoryOn();
-  writer->Write();
-  vtkUnsignedCharArray* const bytes = writer->GetResult();
-  return {reinterpret_cast<const char*>(bytes->GetPointer(0)), static_cast<std::size_t>(bytes->GetNumberOfTuples())};
-}
-
 }  // namespace
-
-std::string to_png(const Image& image) {
-  vtkNew<vtkPNGWriter> writer;
-  return encode(writer.Get(), image);
-}
-
-std::string to_jpeg(const Image& image, int quality_percent) {
-  vtkNew<vtkJPEGWriter> writer;
-  writer->SetQuality(quality_percent);
-  return encode(writer.Get(), image);
-}
 
 struct Stills::State {
   State(const scenes::Scene& scene_in, const std::string& egl_library) : scene(scene_in), gl(egl_library) {
@@ -326,7 +240,7 @@ struct Stills::State {
     if (is_ground(instance)) add_ground_coordinates(data, instance.T_parent_mesh);
     const vtkSmartPointer<vtkActor> actor = actor_of(data);
     actor->GetMapper()->SetScalarModeToUseCellFieldData();
-    actor->GetProperty()->SetAmbient(0.36);
+    actor->GetProperty()->SetAmbient(0.41);
     actor->GetProperty()->SetDiffuse(0.72);
     actor->GetProperty()->SetSpecular(0);
     if (is_ground(instance)) actor->SetTexture(ground_light);
@@ -351,6 +265,8 @@ struct Stills::State {
   }
 
   void place(core::Time t) {
+    if (placed && t == time) return;
+    placed = true;
     time = t;
     for (std::size_t i = 0; i < actors.size(); ++i) {
       actors[i]->SetUserMatrix(to_vtk(T_world_mesh(scene.instances[i]).matrix()));
@@ -405,7 +321,7 @@ struct Stills::State {
     }
     look_from_above(renderer, {light_min, light_min.array() + light_size_m, kShadowPixels, kShadowPixels});
     const Image mask = draw(renderer, kShadowPixels, kShadowPixels, /*supersampling=*/1);
-    GroundLight light{kShadowPixels, std::vector<float>(std::size_t(kShadowPixels) * kShadowPixels)};
+    GroundLight light(kShadowPixels);
     for (int y = 0; y < kShadowPixels; ++y) {
       for (int x = 0; x < kShadowPixels; ++x) {
         const std::size_t from = std::size_t(kShadowPixels - 1 - y) * kShadowPixels + x;
@@ -434,7 +350,7 @@ struct Stills::State {
     renderer->SetGradientBackground(!night);
     renderer->RemoveAllLights();
     renderer->AutomaticLightCreationOff();
-    add_light(renderer, kSun, {1.0f, 0.97f, 0.92f}, 0.92);
+    add_light(renderer, kSun, {1.0f, 0.97f, 0.92f}, 1.0);
     add_light(renderer, {0.8, -0.5, 0.35}, {0.80f, 0.88f, 1.0f}, 0.34);  // the sky, for sides that the sun does not see
     const Rgb near_color = night ? kNightGround : kDayGround;
     const vtkSmartPointer<vtkActor> ground = actor_of(far_ground(center, near_color, low));
@@ -469,7 +385,19 @@ struct Stills::State {
     camera->SetClippingRange(20, 230);
   }
 
-  /// As near as the rectangle of interest allows.
+  /// What the bird's view must hold, from the centre: the rectangle of interest without its near corner, which is empty
+  /// ground in the foreground, and without its outermost sides.
+  std::vector<Eigen::Vector3d> framed_corners() const {
+    const Eigen::Vector2d half = 0.5 * (scene.interest_max - scene.interest_min);
+    const double x = kFramedWidth * half.x(), y = half.y();
+    std::vector<Eigen::Vector3d> corners;
+    for (const double z : {0.0, kTallest_m}) {
+      corners.insert(corners.end(), {{-x, y, z}, {x, y, z}, {x, -y, z}, {-x, 0, z}, {0, -y, z}});
+    }
+    return corners;
+  }
+
+  /// As near as the framed corners allow.
   void look_as_bird(vtkRenderer* renderer, double aspect) {
     const Eigen::Vector3d right = Eigen::Vector3d::UnitZ().cross(kBirdDirection).normalized();
     const Eigen::Vector3d up = kBirdDirection.cross(right);
@@ -477,11 +405,7 @@ struct Stills::State {
     // An eye at focus + s * direction sees a corner c when |right·c| <= tan_x (s - direction·c), and so for up. Sides
     // are handled apart: the focus is moved until left and right, top and bottom need the same distance.
     double right_m = 0, left_m = 0, top_m = 0, bottom_m = 0;
-    for (int k = 0; k < 8; ++k) {
-      const Eigen::Vector3d corner = Eigen::Vector3d(k & 1 ? scene.interest_max.x() : scene.interest_min.x(),
-                                                     k & 2 ? scene.interest_max.y() : scene.interest_min.y(),
-                                                     k & 4 ? ground_z_m + kTallest_m : ground_z_m) -
-                                     center;
+    for (const Eigen::Vector3d& corner : framed_corners()) {
       const double depth_m = kBirdDirection.dot(corner);
       right_m = std::max(right_m, depth_m + right.dot(corner) / tan_x);
       left_m = std::max(left_m, depth_m - right.dot(corner) / tan_x);
@@ -524,6 +448,7 @@ struct Stills::State {
   Eigen::Vector2d light_min = Eigen::Vector2d::Zero();
   double light_size_m = 0;
   core::Time time;
+  bool placed = false;
   double ground_z_m = 0;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
 };

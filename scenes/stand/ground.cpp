@@ -14,9 +14,9 @@ namespace {
 constexpr double tau = 2 * std::numbers::pi;
 
 /// Without the call that std::floor costs on a processor that is not known to round in one instruction.
-inline std::int64_t floor_to_int(double x) {
-  const auto truncated = static_cast<std::int64_t>(x);
-  return truncated - (x < static_cast<double>(truncated) ? 1 : 0);
+inline int floor_to_int(double x) {
+  const int truncated = static_cast<int>(x);
+  return truncated - (x < truncated ? 1 : 0);
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ double SlabSurface::height_m(int i, int j, double x_m, double y_m) const {
 StandRelief::StandRelief(const StandOptions& options, std::uint64_t seed)
     : grid_(options), slabs_per_m_(1 / grid_.size_m), joint_depth_m_(options.joint_depth_mm * 1e-3) {
   const core::RandomStream random(seed, "scenes/stand/relief");
-  for (std::size_t k = 0; k < lattice_.size(); ++k) lattice_[k] = static_cast<float>(random.normal(k));
+  for (std::size_t k = 0; k < lattice_.size(); ++k) lattice_[k] = random.normal(k);
   // Quintic interpolation of independent values has standard deviation 2*181/462 of theirs (square of the integral of
   // w^2 + (1-w)^2 in each direction, rooted).
   constexpr double interpolation_gain = 2.0 * 181 / 462;
@@ -110,13 +110,13 @@ StandRelief::StandRelief(const StandOptions& options, std::uint64_t seed)
 double StandRelief::add_octave(const Octave& o, double x_m, double y_m, Eigen::Vector2d& gradient) const {
   const double u = o.cos_per_m * x_m + o.sin_per_m * y_m + o.shift_u;
   const double v = o.cos_per_m * y_m - o.sin_per_m * x_m + o.shift_v;
-  const std::int64_t i = floor_to_int(u), j = floor_to_int(v);
-  const double s = u - static_cast<double>(i), t = v - static_cast<double>(j);
-  constexpr std::int64_t mask = lattice_size - 1;
-  const auto value = [&](std::int64_t a, std::int64_t b) -> double {
-    return lattice_[static_cast<std::size_t>(((b & mask) << lattice_bits) | (a & mask))];
-  };
-  const double f00 = value(i, j), f10 = value(i + 1, j), f01 = value(i, j + 1), f11 = value(i + 1, j + 1);
+  const int i = floor_to_int(u), j = floor_to_int(v);
+  const double s = u - i, t = v - j;
+  constexpr int mask = lattice_size - 1;
+  const int column = i & mask, next_column = (i + 1) & mask;
+  const double* row = &lattice_[static_cast<std::size_t>((j & mask) << lattice_bits)];
+  const double* next_row = &lattice_[static_cast<std::size_t>(((j + 1) & mask) << lattice_bits)];
+  const double f00 = row[column], f10 = row[next_column], f01 = next_row[column], f11 = next_row[next_column];
   const double ws = s * s * s * (s * (6 * s - 15) + 10), wt = t * t * t * (t * (6 * t - 15) + 10);
   const double ds = 30 * s * s * (s - 1) * (s - 1), dt = 30 * t * t * (t - 1) * (t - 1);
   const double low = f00 + ws * (f10 - f00), high = f01 + ws * (f11 - f01);
@@ -128,7 +128,7 @@ double StandRelief::add_octave(const Octave& o, double x_m, double y_m, Eigen::V
 }
 
 double StandRelief::groove_m(double across_m, double along_m, double& d_across, double& d_along) const {
-  const double cell = static_cast<double>(floor_to_int(across_m * slabs_per_m_ + 0.5));
+  const double cell = floor_to_int(across_m * slabs_per_m_ + 0.5);
   const double d = across_m - cell * grid_.size_m;
   const double w = grid_.joint_width_m / 2;
   d_across = d_along = 0;

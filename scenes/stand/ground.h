@@ -78,7 +78,7 @@ class StandRelief final : public Relief {
   SlabGrid grid_;
   double slabs_per_m_, joint_depth_m_;
   std::array<Octave, 3> octaves_;
-  std::array<float, lattice_size * lattice_size> lattice_;
+  std::array<double, lattice_size * lattice_size> lattice_;
 };
 
 }  // namespace tarmac::scenes

@@ -160,9 +160,9 @@ void add_service_stair(MeshBuilder& b, const core::SE3& T_world_tunnel, double a
   for (const double y : {inner, outer}) {
     add_beam(b, {foot_x, y, 0.1}, {-0.1, y, height - 0.12}, 0.05, 0.22);
     add_beam(b, {foot_x, y, 1.15}, {-0.1, y, height + 1.0}, 0.05, 0.05);
-    add_beam(b, {foot_x, y, 0}, {foot_x, y, 1.15}, 0.05, 0.05);
+    add_beam(b, {foot_x, y, -0.15}, {foot_x, y, 1.15}, 0.05, 0.05);
     add_beam(b, {-0.1, y, height - 0.1}, {-0.1, y, height + 1.0}, 0.05, 0.05);
-    add_beam(b, {1.05, y, 0}, {1.05, y, height + 1.0}, 0.07, 0.07);
+    add_beam(b, {1.05, y, -0.15}, {1.05, y, height + 1.0}, 0.07, 0.07);
   }
   add_beam(b, {-0.1, outer, height + 1.0}, {1.05, outer, height + 1.0}, 0.05, 0.05);
   b.at(core::SE3::Identity());

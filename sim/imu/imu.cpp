@@ -26,7 +26,7 @@ Reading reading_at(const SmoothTrajectory& motion, const SE3& T_body_imu, double
   const Vector3d up(0, 0, gravity_m_s2), arm = T_body_imu.translation();
   const Vector3d force_body = k.T_world_body.linear().transpose() * (k.a_world + up) + k.alpha_body.cross(arm) +
                               k.omega_body.cross(k.omega_body.cross(arm));
-  const auto R_imu_body = T_body_imu.linear().transpose();
+  const Eigen::Matrix3d R_imu_body = T_body_imu.linear().transpose();
   return {R_imu_body * k.omega_body, R_imu_body * force_body};
 }
 

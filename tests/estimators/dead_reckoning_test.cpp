@@ -88,7 +88,7 @@ core::LidarSweep empty_sweep(int k) {
   return sweep;
 }
 
-struct Run {
+struct Reckoned {
   std::vector<SweepOutcome> outcomes;
   core::Estimate end;
 };
@@ -98,12 +98,12 @@ struct RunSetup {
   double group_delay_s = 0;
   double seconds = 10;
   double hole_from_s = 1e9, hole_to_s = 1e9;  ///< samples left out
-  core::ImuSample error;                      ///< added to every sample
+  core::ImuSample error{};                    ///< added to every sample
 };
 
-Run run(const Turn& turn, const EstimatorContext& context, const RunSetup& setup) {
+Reckoned run(const Turn& turn, const EstimatorContext& context, const RunSetup& setup) {
   DeadReckoning estimator({}, context);
-  Run result;
+  Reckoned result;
   int next = 1;
   for (int k = 0; k < static_cast<int>(10 * setup.seconds); ++k) {
     const core::LidarSweep sweep = empty_sweep(k);
@@ -121,7 +121,7 @@ Run run(const Turn& turn, const EstimatorContext& context, const RunSetup& setup
   return result;
 }
 
-double end_error_m(const Turn& turn, const Run& result) {
+double end_error_m(const Turn& turn, const Reckoned& result) {
   const core::SweepResult& last = result.outcomes.back().result;
   return (last.T_map_body.translation() - turn.T_world_body(core::to_s(last.reference)).translation()).norm();
 }
@@ -160,7 +160,7 @@ TEST(Propagate, SecondIntegralIsThePowerSeriesOnBothSidesOfTheSwitch) {
 
 TEST(DeadReckoning, FollowsAConstantTwistFromIntervalMeansThroughALeverArm) {
   const Turn turn;
-  const Run result = run(turn, context_of(sheet_of(200)), {});
+  const Reckoned result = run(turn, context_of(sheet_of(200)), {});
   for (const SweepOutcome& outcome : result.outcomes) {
     if (outcome.result.status != SweepStatus::ok) continue;
     for (const double phase : {0.0, 0.37, 1.0}) {
@@ -290,7 +290,7 @@ TEST(DeadReckoning, WithoutCalibrationImuOrRateItSaysWhatIsMissing) {
 
 TEST(DeadReckoning, AHoleInTheSamplesIsCrossedAndItsSweepsAreLost) {
   const Turn turn;
-  const Run result = run(turn, context_of(sheet_of(200)), {.hole_from_s = 5.02, .hole_to_s = 5.25});
+  const Reckoned result = run(turn, context_of(sheet_of(200)), {.hole_from_s = 5.02, .hole_to_s = 5.25});
   for (int k = 20; k < 100; ++k) {
     const SweepStatus expected = k >= 50 && k <= 52 ? SweepStatus::lost : SweepStatus::ok;
     EXPECT_EQ(result.outcomes[static_cast<std::size_t>(k)].result.status, expected) << k;
@@ -301,7 +301,7 @@ TEST(DeadReckoning, AHoleInTheSamplesIsCrossedAndItsSweepsAreLost) {
 
 TEST(DeadReckoning, OneLostSampleIsNoHole) {
   const Turn turn;
-  const Run result = run(turn, context_of(sheet_of(200)), {.hole_from_s = 5.0201, .hole_to_s = 5.0299});
+  const Reckoned result = run(turn, context_of(sheet_of(200)), {.hole_from_s = 5.0201, .hole_to_s = 5.0299});
   for (const SweepOutcome& outcome : result.outcomes) EXPECT_NE(outcome.result.status, SweepStatus::lost);
 }
 

@@ -2,6 +2,7 @@
 /// what a method gets wrong is the method's.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -61,6 +62,15 @@ inline core::LidarSweep sweep_at(std::int64_t k, const std::vector<Eigen::Vector
     for (unsigned axis = 0; axis < 3 && setup.noise_m > 0; ++axis) p[axis] += setup.noise_m * random.normal(draw, axis);
     sweep.push_back(p.cast<float>(), static_cast<std::int32_t>(t_ns), static_cast<std::uint16_t>(i % 64), 1.0F);
   }
+  return sweep;
+}
+
+/// A sweep without points, right after another one.
+inline core::LidarSweep empty_sweep(std::int64_t index, core::Time begin, core::Time end) {
+  core::LidarSweep sweep;
+  sweep.index = index;
+  sweep.begin = begin;
+  sweep.end = end;
   return sweep;
 }
 

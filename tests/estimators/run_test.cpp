@@ -81,8 +81,8 @@ TEST_F(RunEstimator, ASweepOfNothingButNanIsEmptyAndTheRunGoesOn) {
 }
 
 TEST_F(RunEstimator, AnEmptySweepIsEmptyAndTheRunGoesOn) {
-  sweeps_[0] = core::LidarSweep{.index = 0, .begin = sweeps_[0].begin, .end = sweeps_[0].end};
-  sweeps_[4] = core::LidarSweep{.index = 4, .begin = sweeps_[4].begin, .end = sweeps_[4].end};
+  sweeps_[0] = tests::empty_sweep(0, sweeps_[0].begin, sweeps_[0].end);
+  sweeps_[4] = tests::empty_sweep(4, sweeps_[4].begin, sweeps_[4].end);
   const RunResult result = run();
   EXPECT_EQ(status(result, 0), SweepStatus::empty);
   EXPECT_EQ(status(result, 4), SweepStatus::empty);
@@ -127,9 +127,10 @@ TEST_F(RunEstimator, WithoutSweepsNothingIsInitialised) {
 }
 
 TEST_F(RunEstimator, ImuSamplesThatRepeatGoBackOrAreNotFiniteAreDropped) {
-  for (int k = 0; k < 30; ++k)
-    sweeps_.push_back(core::LidarSweep{
-        .index = 6 + k, .begin = sweeps_.back().end, .end = sweeps_.back().end + core::Duration(100'000'000)});
+  for (int k = 6; k < 36; ++k) {
+    const core::Time begin = sweeps_.back().end;
+    sweeps_.push_back(tests::empty_sweep(k, begin, begin + core::Duration(100'000'000)));
+  }
   imu_ = tests::imu_at_rest(rig_, 3.6);
   const RunResult clean = run("dead-reckoning");
   std::vector<core::ImuSample> dirty;

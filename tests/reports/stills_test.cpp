@@ -1,18 +1,14 @@
 // Pictures show what is there, where it is, at the time that was asked for.
 #include "reports/stills.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "reports/page.h"
 #include "tests/reports/example.h"
 
 namespace tarmac::reports {
 namespace {
-
-using ::testing::HasSubstr;
 
 Eigen::Vector3d pixel(const Image& image, int x, int y) {
   const std::uint8_t* const p = &image.rgb.at(3 * (static_cast<std::size_t>(y) * image.width_px + x));
@@ -158,65 +154,6 @@ TEST_F(StillsOfTheExample, PngIsAPngOfThatSize) {
   EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(static_cast<unsigned char>(png[19]), 160);
   EXPECT_EQ(static_cast<unsigned char>(png[23]), 90);
-}
-
-TEST(OffscreenGl, SaysWhatToInstallWhereThereIsNoEgl) {
-  try {
-    OffscreenGl gl("libEGL-that-is-not-there.so.9");
-    FAIL() << "opened a library that does not exist";
-  } catch (const RenderingUnavailable& error) {
-    for (const char* package : {"libegl1", "libegl-mesa0", "libgl1-mesa-dri"}) {
-      EXPECT_THAT(error.what(), HasSubstr(package));
-    }
-  }
-}
-
-TEST(DrawPictures, WithoutEglLeavesANoteInTheirPlace) {
-  const scenes::Scene scene = example::scene();
-  ReportInput input = example::input();
-  input.scene = &scene;
-  PictureSettings settings;
-  settings.egl_library = "libEGL-that-is-not-there.so.9";
-  const Pictures pictures = draw_pictures(input, {}, settings);
-  EXPECT_FALSE(pictures.overview.has_value());
-  EXPECT_THAT(pictures.note, HasSubstr("libegl1"));
-}
-
-TEST(TopViewMapping, PixelsAreSquaresOfTheWorldAndTheMiddleStays) {
-  const TopView view = top_view({-30, 5}, {70, 44.7}, 640);
-  const double m_per_px = 100.0 / 640;
-  EXPECT_EQ(view.height_px, std::lround(39.7 / m_per_px));
-  EXPECT_NEAR((view.max_m.y() - view.min_m.y()) / view.height_px, m_per_px, 1e-12);
-  EXPECT_NEAR(0.5 * (view.min_m.y() + view.max_m.y()), 24.85, 1e-12);
-}
-
-TEST(ErrorScaling, SpansTheMapsInRoundSteps) {
-  metrics::MapSample sample;
-  for (int k = 1; k <= 1000; ++k) {
-    sample.error_m.push_back(0.001f * static_cast<float>(k));  // 1 mm to 1 m, even
-    sample.moving.push_back(k == 500);
-  }
-  const ErrorScale scale = error_scale({&sample});
-  EXPECT_DOUBLE_EQ(scale.low_m, 0.05);  // the 5 % quantile is 0.05
-  EXPECT_DOUBLE_EQ(scale.high_m, 1);    // the 99 % quantile is 0.99
-  EXPECT_DOUBLE_EQ(place_on(scale, 0.05), 0);
-  EXPECT_DOUBLE_EQ(place_on(scale, 1), 1);
-  EXPECT_NEAR(place_on(scale, std::sqrt(0.05)), 0.5, 1e-12) << "logarithmic";
-  EXPECT_DOUBLE_EQ(place_on(scale, 0), 0);
-  EXPECT_DOUBLE_EQ(place_on(scale, 100), 1);
-}
-
-TEST(ErrorScaling, SurvivesAPerfectMapAndNone) {
-  metrics::MapSample perfect;
-  perfect.error_m.assign(10, 0.0f);
-  const ErrorScale scale = error_scale({&perfect});
-  EXPECT_GT(scale.low_m, 0);
-  EXPECT_GT(scale.high_m, scale.low_m);
-  EXPECT_GT(error_scale({}).high_m, 0);
-}
-
-TEST(ErrorScaling, NotANumberIsGrey) {
-  EXPECT_EQ(error_color(place_on({}, NAN)), Eigen::Vector3f(0.5f, 0.5f, 0.5f));
 }
 
 }  // namespace

@@ -36,6 +36,9 @@ function colorBar(scale) {
       if (value >= scale.low_m * 0.999 && value <= scale.high_m * 1.001) ticks.push(value);
     }
   }
+  // The last but one gives way where its label would touch the last one's.
+  const last = ticks.length - 1;
+  if (last > 1 && Math.log(ticks[last] / ticks[last - 1]) < 0.1 * Math.log(scale.high_m / scale.low_m)) ticks.splice(last - 1, 1);
   const place = (value) => 100 * Math.log(value / scale.low_m) / Math.log(scale.high_m / scale.low_m);
   return el("div", { class: "colorbar", role: "img", "aria-label": `Colours from ${formatNumber(100 * scale.low_m)} to ${formatNumber(100 * scale.high_m)} centimetres` },
     el("span", { class: "axis-name" }, "Point error, cm"),

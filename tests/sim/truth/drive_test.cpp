@@ -80,11 +80,11 @@ TEST(Drive, KinematicsAreTheDerivativesOfThePose) {
 }
 
 TEST(Drive, StandTurnIsLongRestsBrakesHardAndTurnsTightly) {
-  const auto motion = stand_turn(70);
+  const auto motion = stand_turn(68);
   double length_m = 0, hardest = 0, fastest_turn = 0, brake_x_m = 0, top_speed = 0;
   double x_max = -1e9, x_min = 1e9, y_max = -1e9;
   Vector3d before = motion->pose(Time()).translation();
-  for (int k = 1; k <= 7000; ++k) {
+  for (int k = 1; k <= 6800; ++k) {
     const Kinematics now = motion->at(time_from_ns(k * 10'000'000LL));
     const Vector3d p = now.T_world_body.translation();
     if (k <= 300) {
@@ -99,14 +99,14 @@ TEST(Drive, StandTurnIsLongRestsBrakesHardAndTurnsTightly) {
     top_speed = std::max(top_speed, now.v_world.norm());
     x_max = std::max(x_max, p.x()), x_min = std::min(x_min, p.x()), y_max = std::max(y_max, p.y());
   }
-  EXPECT_GT(length_m, 260);
+  EXPECT_GT(length_m, 255);
   EXPECT_LT(hardest, -4.5);
-  EXPECT_NEAR(brake_x_m, 13, 3);
+  EXPECT_NEAR(brake_x_m, 13, 3) << "on the road behind the stand";
   EXPECT_NEAR(fastest_turn, 0.5, 0.1);
   EXPECT_NEAR(top_speed, 7, 0.5);
   EXPECT_NEAR(x_max, 26, 1);
   EXPECT_NEAR(y_max, 38, 1);
-  EXPECT_NEAR(x_min, -60, 0.1);
+  EXPECT_NEAR(x_min, -30, 1);
   EXPECT_LT(motion->at(motion->end()).v_world.norm(), 0.05) << "it has stopped";
 }
 

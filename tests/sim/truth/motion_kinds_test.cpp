@@ -53,7 +53,7 @@ TEST(MotionKinds, StraightKeepsItsWorldVelocityAndStillStaysPut) {
 }
 
 TEST(MotionKinds, ResolvedTextMakesTheSameMotionAndResolvesToItself) {
-  const auto node = ConfigNode::parse(tests::stand_turn_motion, "stand-turn.yaml");
+  const auto node = tests::stand_turn_motion();
   const std::string resolved = resolve_motion(node);
   EXPECT_EQ(resolved.substr(0, 14), "  kind: drive\n");
   const auto again = ConfigNode::parse("motion:\n" + resolved, "resolved").child("motion");

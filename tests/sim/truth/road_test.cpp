@@ -59,6 +59,16 @@ TEST(Road, RearAxleMeetsWhatTheFrontAxleMet) {
   EXPECT_EQ(road.at(1.5)[heave].f, 0);
 }
 
+TEST(Road, RoughnessUnderTheRearAxleIsWhatTheFrontAxleMetAWheelbaseBefore) {
+  // Nose down is positive: front = heave - pitch L / 2, rear = heave + pitch L / 2.
+  constexpr double L = 2.7;
+  const Road road(RoadOptions{}, L, 1.6, 1);
+  for (double s = 0; s < 100; s += 0.37) {
+    const auto here = road.at(s), later = road.at(s + L);
+    ASSERT_NEAR(here[heave].f - here[pitch].f * L / 2, later[heave].f + later[pitch].f * L / 2, 1e-13) << s;
+  }
+}
+
 TEST(Road, AnotherSeedIsAnotherRoad) {
   EXPECT_EQ(Road(RoadOptions{}, 3, 1.6, 1).at(10)[roll].f, Road(RoadOptions{}, 3, 1.6, 1).at(10)[roll].f);
   EXPECT_NE(Road(RoadOptions{}, 3, 1.6, 1).at(10)[roll].f, Road(RoadOptions{}, 3, 1.6, 2).at(10)[roll].f);
