@@ -198,6 +198,7 @@ std::string page_data(const ReportInput& input, const Pictures& pictures) {
   }
   std::sort(collected.seeds.begin(), collected.seeds.end());
   return inside_script({{"title", input.title},
+                        {"picture_time_s", core::to_s(input.picture_time)},
                         {"estimators", collected.estimators},
                         {"seeds", collected.seeds},
                         {"metrics", metric_table(collected.metrics)},

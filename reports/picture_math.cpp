@@ -42,17 +42,21 @@ TopView top_view(const Eigen::Vector2d& min_m, const Eigen::Vector2d& max_m, int
 }
 
 ErrorScale error_scale(const std::vector<const metrics::MapSample*>& maps) {
-  std::vector<double> errors_m;
+  std::vector<double> lows_m, highs_m;
   for (const auto* map : maps) {
+    std::vector<double> errors_m;
     for (std::size_t i = 0; i < map->error_m.size(); ++i) {
       const bool moving = i < map->moving.size() && map->moving[i];
       if (!moving && std::isfinite(map->error_m[i])) errors_m.push_back(map->error_m[i]);
     }
+    if (errors_m.empty()) continue;
+    lows_m.push_back(quantile(errors_m, 0.05));
+    highs_m.push_back(quantile(errors_m, 0.99));
   }
-  if (errors_m.empty()) return {};
+  if (lows_m.empty()) return {};
   const double smallest_m = 1e-6;  // a replay of the truth has errors of 0, which no logarithm takes
-  const double low_m = round_125(std::max(smallest_m, quantile(errors_m, 0.05)), -1);
-  const double high_m = round_125(std::max(smallest_m, quantile(errors_m, 0.99)), +1);
+  const double low_m = round_125(std::max(smallest_m, quantile(lows_m, 0.5)), -1);
+  const double high_m = round_125(std::max(smallest_m, quantile(highs_m, 0.5)), +1);
   return {low_m, std::max(high_m, 10 * low_m)};
 }
 

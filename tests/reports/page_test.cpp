@@ -41,6 +41,7 @@ const json& run_of(const json& data, const std::string& estimator, std::uint64_t
 TEST(PageData, HoldsTheSeriesOfEveryFigureForEveryEstimatorAndSeed) {
   const json data = data_of(assemble_page(example::input(), {}));
   EXPECT_EQ(data["seeds"], json({1, 2}));
+  EXPECT_EQ(data["picture_time_s"], 0);
   EXPECT_EQ(data["estimators"], json({"steady", "shaky"}));
   for (const int seed : {1, 2}) {
     for (const char* name :

@@ -60,6 +60,17 @@ TEST(ErrorScaling, SpansTheMapsInRoundSteps) {
   EXPECT_DOUBLE_EQ(place_on(scale, 100), 1);
 }
 
+TEST(ErrorScaling, IsNotStretchedByOneMethodThatIsFarOff) {
+  metrics::MapSample good, bad;
+  for (int k = 1; k <= 100; ++k) {
+    good.error_m.push_back(0.001f * static_cast<float>(k));
+    bad.error_m.push_back(1.0f * static_cast<float>(k));
+  }
+  EXPECT_DOUBLE_EQ(error_scale({&bad, &good, &good}).high_m, error_scale({&good}).high_m);
+  EXPECT_DOUBLE_EQ(error_scale({&bad, &good}).high_m, error_scale({&good}).high_m);
+  EXPECT_GT(error_scale({&bad}).high_m, 100 * error_scale({&good}).high_m);
+}
+
 TEST(ErrorScaling, SurvivesAPerfectMapAndNone) {
   metrics::MapSample perfect;
   perfect.error_m.assign(10, 0.0f);

@@ -29,7 +29,7 @@ export function logTicks(min, max) {
   if (!(min > 0) || !(max >= min)) return [];
   const from = Math.floor(Math.log10(min) - 1e-9);
   const to = Math.ceil(Math.log10(max) + 1e-9);
-  const factors = to - from > 4 ? [1] : [1, 2, 5];
+  const factors = max / min > 2000 ? [1] : [1, 2, 5];
   const ticks = [];
   for (let decade = from; decade <= to; ++decade) {
     for (const factor of factors) {

@@ -3,6 +3,7 @@ import "uplot/dist/uPlot.min.css";
 import "./page.css";
 import { el, installTooltip } from "./dom.js";
 import { chart, figure } from "./figures.js";
+import { formatNumber } from "./format.js";
 import { createState } from "./state.js";
 import { FullTable, SummaryTable } from "./tables.js";
 import { applyTheme, themeSwitch } from "./theme.js";
@@ -46,12 +47,12 @@ function figures() {
   const manySeeds = data.seeds.length > 1 ? " With several seeds the line is their median and the band their range." : "";
   const top = new TopView(state);
   state.listen(() => top.draw());
-  section("top", "On the stand",
+  section("top", "Paths",
     figure("True and estimated paths from above",
       "The broad line is where the vehicle really went, a thin coloured one where a method believes it went; the gap between them is the error at that place, after the method's path was laid onto the truth at its first pose.",
       top.element));
-  section("stills", "In the picture", pictureNote(state),
-    overview(state) && figure("The scene", "This is what the sensor drove through, at the instant that the moving things are drawn at.", overview(state)),
+  section("stills", "Scene and maps", pictureNote(state),
+    overview(state) && figure("The scene", `What the sensor drove through, seen from the south-west; things that move stand where they were at ${formatNumber(data.picture_time_s)} s.`, overview(state)),
     mapGallery(state));
 
   const drift = add("drift_vs_distance", { band: data.seeds.length === 1 });

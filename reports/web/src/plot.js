@@ -6,13 +6,13 @@ import { isNumber, nearestIndex } from "./stats.js";
 
 const kFont = '11.5px "Inter", ui-sans-serif, system-ui, "Helvetica Neue", Arial, sans-serif';
 
-/** Worth a logarithmic axis: the lines' typical sizes are more than a factor 15 apart. */
+/** Worth a logarithmic axis: the lines' typical sizes are more than a factor 8 apart. */
 export function wantsLog(lines) {
   const sizes = lines.map((line) => {
     const positive = line.y.filter((value) => isNumber(value) && value > 0).sort((a, b) => a - b);
     return positive[positive.length >> 1];
   }).filter(isNumber);
-  return sizes.length > 1 && Math.max(...sizes) > 15 * Math.min(...sizes);
+  return sizes.length > 1 && Math.max(...sizes) > 8 * Math.min(...sizes);
 }
 
 /**

@@ -22,6 +22,7 @@ test("logarithmic ticks lie inside and rise", () => {
   const ticks = logTicks(0.03, 4);
   assert.deepEqual(ticks, [0.05, 0.1, 0.2, 0.5, 1, 2]);
   assert.deepEqual(logTicks(1e-6, 1e3).every((tick) => Math.abs(Math.log10(tick) % 1) < 1e-9), true);
+  assert.deepEqual(logTicks(0.02, 30), [0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20]);
   assert.deepEqual(logTicks(0, 1), []);
 });
 
