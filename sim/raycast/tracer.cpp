@@ -60,7 +60,9 @@ struct Frame {
   Vector3d p;
 };
 
-Frame frame_of(const SE3& T) { return {T.linear(), T.translation()}; }
+Frame frame_of(const SE3& T) {
+  return {T.linear(), T.translation()};
+}
 
 struct MeshData {
   EmbreeScene scene;
