@@ -52,25 +52,30 @@ Device new_device(const std::string& config) {
 }
 
 EmbreeScene mesh_scene(RTCDevice device, const scenes::Mesh& mesh) {
-  EmbreeScene scene(rtcNewScene(device));
+  EmbreeScene scene = empty_scene(device);
+  add_mesh(device, scene.get(), mesh, core::SE3::Identity(), 0);
+  commit(scene.get());
+  return scene;
+}
+
+EmbreeScene empty_scene(RTCDevice device) {
+  return EmbreeScene(rtcNewScene(device));
+}
+
+void add_mesh(RTCDevice device, RTCScene scene, const scenes::Mesh& mesh, const core::SE3& T_base_mesh, unsigned id) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   if (!mesh.triangles.empty()) {
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                             sizeof(Eigen::Vector3f), mesh.vertices.size());
-    std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Eigen::Vector3f));
+    auto* vertices = static_cast<Eigen::Vector3f*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Eigen::Vector3f), mesh.vertices.size()));
+    for (std::size_t k = 0; k < mesh.vertices.size(); ++k)
+      vertices[k] = (T_base_mesh * mesh.vertices[k].cast<double>()).cast<float>();
     void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                               3 * sizeof(std::uint32_t), mesh.triangles.size());
     std::memcpy(triangles, mesh.triangles.data(), mesh.triangles.size() * 3 * sizeof(std::uint32_t));
   }
   rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene.get(), geometry, 0);
+  rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
-  commit(scene.get());
-  return scene;
-}
-
-EmbreeScene top_scene(RTCDevice device) {
-  return EmbreeScene(rtcNewScene(device));
 }
 
 void add_instance(RTCDevice device, RTCScene top, RTCScene mesh, unsigned id, std::span<const core::SE3> poses) {

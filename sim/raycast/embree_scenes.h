@@ -26,9 +26,13 @@ using EmbreeScene = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 Device new_device(const std::string& config);
 /// One mesh as a committed scene of its own, to be instanced.
 EmbreeScene mesh_scene(RTCDevice device, const scenes::Mesh& mesh);
-/// A top scene: holds instances only, so that a commit costs next to nothing.
-EmbreeScene top_scene(RTCDevice device);
-/// Adds an instance under `id`, which hits report. `poses` are T_base_mesh at equidistant times, the first at ray time
+/// An empty scene, to be filled and committed.
+EmbreeScene empty_scene(RTCDevice device);
+/// Adds a mesh, carried by T_base_mesh in double precision, as triangles of the scene's own under `id`: hits report it
+/// as geometry, with no instance. One hierarchy over all that stands still is faster to walk than instances whose boxes
+/// overlap on one pavement.
+void add_mesh(RTCDevice device, RTCScene scene, const scenes::Mesh& mesh, const core::SE3& T_base_mesh, unsigned id);
+/// Adds an instance under `id`, which hits report as instance. `poses` are T_base_mesh at equidistant times, the first at ray time
 /// 0 and the last at 1; one pose stands still.
 void add_instance(RTCDevice device, RTCScene top, RTCScene mesh, unsigned id, std::span<const core::SE3> poses);
 /// Builds the hierarchy. Waits without taking up other work of the thread pool: callers may hold locks.

@@ -22,8 +22,9 @@ using core::SE3;
 using core::Time;
 using Eigen::Vector3d;
 
-// Origins are rounded to this grid to find the base: near enough for single precision, and rarely another one.
-constexpr double base_grid_m = 64;
+// Origins are rounded to this grid to find the base. Single precision decides only which triangle is met, within 15
+// micrometres at half a cell; a stand or a pier lies in one cell and is built once.
+constexpr double base_grid_m = 512;
 constexpr int max_motion_steps = 129;  // Embree's limit
 // Embree's own distance is off by its rounding and by the motion steps, both divided by the cosine of incidence; a
 // recomputed distance that is farther off than this belongs to a triangle seen edge-on, and Embree's is kept.
@@ -65,7 +66,7 @@ Frame frame_of(const SE3& T) {
 }
 
 struct MeshData {
-  EmbreeScene scene;
+  EmbreeScene scene;  // of what actors carry; null for scenery
   std::vector<TrianglePlane> planes;
 };
 
@@ -115,18 +116,19 @@ struct SweepTracer::State {
 
 RTCScene Tracer::State::static_scene(const Cell& cell) {
   const std::lock_guard lock(mutex);
-  EmbreeScene& top = static_scenes[cell];
-  if (top) return top.get();
-  top = top_scene(device.get());
+  EmbreeScene& built = static_scenes[cell];
+  if (built) return built.get();
+  EmbreeScene whole = empty_scene(device.get());
   const Eigen::Vector3d base = centre_of(cell);
   for (std::size_t i = 0; i < scene->instances.size(); ++i) {
     const scenes::Instance& instance = scene->instances[i];
     if (instance.actor >= 0) continue;
-    const SE3 pose = relative_to(base, instance.T_parent_mesh);
-    add_instance(device.get(), top.get(), meshes[instance.mesh].scene.get(), static_cast<unsigned>(i), {&pose, 1});
+    add_mesh(device.get(), whole.get(), scene->meshes[instance.mesh], relative_to(base, instance.T_parent_mesh),
+             static_cast<unsigned>(i));
   }
-  commit(top.get());
-  return top.get();
+  commit(whole.get());
+  built = std::move(whole);
+  return built.get();
 }
 
 // An actor stays within the bow of its acceleration around the chord between its first and last position.
@@ -148,8 +150,13 @@ Tracer::Tracer(std::shared_ptr<const scenes::Scene> scene, const TracerSettings&
   state_->device = new_device(fmt::format("isa={},threads={}", state_->isa, std::max(1, settings.threads)));
   for (const scenes::Instance& instance : state_->scene->instances)
     state_->T_parent_mesh.push_back(frame_of(instance.T_parent_mesh));
-  for (const scenes::Mesh& mesh : state_->scene->meshes)
-    state_->meshes.push_back({mesh_scene(state_->device.get(), mesh), planes_of(mesh)});
+  std::vector<bool> moves(state_->scene->meshes.size(), false);
+  for (const scenes::Instance& instance : state_->scene->instances)
+    if (instance.actor >= 0) moves[instance.mesh] = true;
+  for (std::size_t k = 0; k < moves.size(); ++k) {
+    const scenes::Mesh& mesh = state_->scene->meshes[k];
+    state_->meshes.push_back({moves[k] ? mesh_scene(state_->device.get(), mesh) : nullptr, planes_of(mesh)});
+  }
 }
 
 Tracer::~Tracer() = default;
@@ -182,7 +189,7 @@ SweepTracer Tracer::sweep(Time begin, Time end, const Eigen::Vector3d& origin_wo
     std::vector<SE3> T_world_actor;
     for (int k = 0; k < steps; ++k)
       T_world_actor.push_back(actor.motion->T_world_actor(begin + k * (end - begin) / (steps - 1)));
-    if (!sweep.moving_scene) sweep.moving_scene = top_scene(state_->device.get());
+    if (!sweep.moving_scene) sweep.moving_scene = empty_scene(state_->device.get());
     ++sweep.actors;
     std::vector<SE3> poses(T_world_actor.size());
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -276,7 +283,8 @@ void SweepTracer::State::finish(const Rays& rays, const RTCRayHit16& packet, std
     return;
   }
   const scenes::Scene& scene = *tracer->scene;
-  const std::uint32_t id = packet.hit.instID[0][lane];
+  const std::uint32_t actor_instance = packet.hit.instID[0][lane];
+  const std::uint32_t id = actor_instance == RTC_INVALID_GEOMETRY_ID ? packet.hit.geomID[lane] : actor_instance;
   const std::uint32_t triangle = packet.hit.primID[lane];
   const scenes::Instance& instance = scene.instances[id];
   const Frame& T = T_world_mesh(id, rays.t_ns[i], poses);
