@@ -89,42 +89,77 @@ double SlabSurface::height_m(int i, int j, double x_m, double y_m) const {
          tilt.slope_y * (y_m - grid_.origin_m.y() - (j + 0.5) * grid_.size_m);
 }
 
-StandRelief::StandRelief(const StandOptions& options, std::uint64_t seed)
-    : grid_(options), slabs_per_m_(1 / grid_.size_m), joint_depth_m_(options.joint_depth_mm * 1e-3) {
-  const core::RandomStream random(seed, "scenes/stand/relief");
-  for (std::size_t k = 0; k < lattice_.size(); ++k) lattice_[k] = random.normal(k);
-  // Quintic interpolation of independent values has standard deviation 2*181/462 of theirs (square of the integral of
-  // w^2 + (1-w)^2 in each direction, rooted).
-  constexpr double interpolation_gain = 2.0 * 181 / 462;
-  constexpr std::array<double, 3> cell_m{0.05, 0.19, 0.83};
-  constexpr std::array<double, 3> variance_share{0.25, 0.25, 0.5};
-  for (std::size_t k = 0; k < octaves_.size(); ++k) {
-    const double turn =
-        0.4 + 0.7 * static_cast<double>(k);  // no octave's lattice is parallel to another's or the joints
-    octaves_[k] = {options.relief_rms_mm * 1e-3 * std::sqrt(variance_share[k]) / interpolation_gain,
-                   std::cos(turn) / cell_m[k], std::sin(turn) / cell_m[k], lattice_size * random.uniform(k, 1),
-                   lattice_size * random.uniform(k, 2)};
-  }
+namespace {
+
+/// Quintic interpolation between independent values that repeat after `period` nodes: C2, and with them at the nodes.
+double octave(const core::RandomStream& random, std::uint32_t id, int period, double u, double v) {
+  const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
+  const double s = u - i, t = v - j;
+  const auto value = [&](int a, int b) {
+    return random.normal(static_cast<std::uint64_t>((b % period) * period + a % period), id);
+  };
+  const double ws = s * s * s * (s * (6 * s - 15) + 10), wt = t * t * t * (t * (6 * t - 15) + 10);
+  const double low = value(i, j) + ws * (value(i + 1, j) - value(i, j));
+  const double high = value(i, j + 1) + ws * (value(i + 1, j + 1) - value(i, j + 1));
+  return low + wt * (high - low);
 }
 
-double StandRelief::add_octave(const Octave& o, double x_m, double y_m, Eigen::Vector2d& gradient) const {
-  const double u = o.cos_per_m * x_m + o.sin_per_m * y_m + o.shift_u;
-  const double v = o.cos_per_m * y_m - o.sin_per_m * x_m + o.shift_v;
+constexpr double node_m = 0.05;  ///< the finest grain of the texture
+constexpr double turn_rad = 0.4;  ///< the lattice is parallel neither to joints nor to roads
+
+}  // namespace
+
+StandRelief::StandRelief(const StandOptions& options, std::uint64_t seed)
+    : grid_(options),
+      slabs_per_m_(1 / grid_.size_m),
+      joint_depth_m_(options.joint_depth_mm * 1e-3),
+      cos_per_m_(std::cos(turn_rad) / node_m),
+      sin_per_m_(std::sin(turn_rad) / node_m),
+      lattice_m_(static_cast<std::size_t>(lattice_size) * lattice_size) {
+  // Grains of 0.05, 0.2 and 0.8 m. They are added up at the nodes once, so that a query interpolates one lattice.
+  const core::RandomStream random(seed, "scenes/stand/relief");
+  constexpr std::array<int, 3> nodes_a_grain{1, 4, 16};
+  constexpr std::array<double, 3> share{1, 1, std::numbers::sqrt2};
+  for (int b = 0; b < lattice_size; ++b) {
+    for (int a = 0; a < lattice_size; ++a) {
+      double sum = 0;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const int n = nodes_a_grain[k];
+        sum += share[k] * octave(random, k, lattice_size / n, static_cast<double>(a) / n, static_cast<double>(b) / n);
+      }
+      lattice_m_[static_cast<std::size_t>(b * lattice_size + a)] = static_cast<float>(sum);
+    }
+  }
+  // Scaled so that the interpolated texture, not its nodes, has the root mean square asked for.
+  double squares = 0;
+  int samples = 0;
+  Eigen::Vector2d gradient;
+  for (double x = 0; x < lattice_size * node_m; x += 2.3 * node_m) {
+    for (double y = 0; y < lattice_size * node_m; y += 2.7 * node_m, ++samples) {
+      gradient.setZero();
+      const double h = texture_m(x, y, gradient);
+      squares += h * h;
+    }
+  }
+  const double scale = options.relief_rms_mm * 1e-3 / std::sqrt(squares / samples);
+  for (float& height : lattice_m_) height = static_cast<float>(height * scale);
+}
+
+double StandRelief::texture_m(double x_m, double y_m, Eigen::Vector2d& gradient) const {
+  const double u = cos_per_m_ * x_m + sin_per_m_ * y_m, v = cos_per_m_ * y_m - sin_per_m_ * x_m;
   const int i = floor_to_int(u), j = floor_to_int(v);
   const double s = u - i, t = v - j;
   constexpr int mask = lattice_size - 1;
-  const int column = i & mask, next_column = (i + 1) & mask;
-  const double* row = &lattice_[static_cast<std::size_t>((j & mask) << lattice_bits)];
-  const double* next_row = &lattice_[static_cast<std::size_t>(((j + 1) & mask) << lattice_bits)];
-  const double f00 = row[column], f10 = row[next_column], f01 = next_row[column], f11 = next_row[next_column];
+  const float* row0 = lattice_m_.data() + ((j & mask) << lattice_bits);
+  const float* row1 = lattice_m_.data() + (((j + 1) & mask) << lattice_bits);
+  const double f00 = row0[i & mask], f10 = row0[(i + 1) & mask], f01 = row1[i & mask], f11 = row1[(i + 1) & mask];
   const double ws = s * s * s * (s * (6 * s - 15) + 10), wt = t * t * t * (t * (6 * t - 15) + 10);
   const double ds = 30 * s * s * (s - 1) * (s - 1), dt = 30 * t * t * (t - 1) * (t - 1);
   const double low = f00 + ws * (f10 - f00), high = f01 + ws * (f11 - f01);
-  const double du = o.amplitude_m * ds * ((1 - wt) * (f10 - f00) + wt * (f11 - f01));
-  const double dv = o.amplitude_m * dt * (high - low);
-  gradient.x() += o.cos_per_m * du - o.sin_per_m * dv;
-  gradient.y() += o.sin_per_m * du + o.cos_per_m * dv;
-  return o.amplitude_m * (low + wt * (high - low));
+  const double du = ds * ((1 - wt) * (f10 - f00) + wt * (f11 - f01)), dv = dt * (high - low);
+  gradient.x() += cos_per_m_ * du - sin_per_m_ * dv;
+  gradient.y() += sin_per_m_ * du + cos_per_m_ * dv;
+  return low + wt * (high - low);
 }
 
 double StandRelief::groove_m(double across_m, double along_m, double& d_across, double& d_along) const {
@@ -144,8 +179,7 @@ double StandRelief::groove_m(double across_m, double along_m, double& d_across, 
 
 double StandRelief::height_m(double x_m, double y_m, Eigen::Vector2d* gradient) const {
   Eigen::Vector2d g = Eigen::Vector2d::Zero();
-  double height = 0;
-  for (const Octave& octave : octaves_) height += add_octave(octave, x_m, y_m, g);
+  const double height = texture_m(x_m, y_m, g);
 
   // Where two joints cross, the groove is as deep as their product form says: a + b - ab/max, never the sum.
   const double x = x_m - grid_.origin_m.x(), y = y_m - grid_.origin_m.y();

@@ -2,7 +2,6 @@
 /// tracing.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -60,25 +59,22 @@ class SlabSurface {
   std::vector<Tilt> tilts_;
 };
 
-/// Texture: three octaves (cells 0.05, 0.19 and 0.83 m) of lattice noise, interpolated by quintics (C2, closed form a
-/// cell). Joints: grooves of profile exp(-(d/w)^4), w = half the joint's width, whose depth wanders along the joint.
+/// Texture: one lattice of nodes 5 cm apart whose heights are the sum of grains of 0.05, 0.2 and 0.8 m, interpolated by
+/// quintics (C2, closed form a cell); it repeats every 12.8 m. Joints: grooves of profile exp(-(d/w)^4), w = half the joint's width, whose depth wanders along the joint.
 class StandRelief final : public Relief {
  public:
   StandRelief(const StandOptions& options, std::uint64_t seed);
   double height_m(double x_m, double y_m, Eigen::Vector2d* gradient = nullptr) const override;
 
  private:
-  static constexpr int lattice_bits = 6, lattice_size = 1 << lattice_bits;
-  struct Octave {
-    double amplitude_m, cos_per_m, sin_per_m, shift_u, shift_v;  // lattice coordinates = turned and scaled x, y
-  };
-  double add_octave(const Octave& octave, double x_m, double y_m, Eigen::Vector2d& gradient) const;
+  static constexpr int lattice_bits = 8, lattice_size = 1 << lattice_bits;
+  double texture_m(double x_m, double y_m, Eigen::Vector2d& gradient) const;
   double groove_m(double across_m, double along_m, double& d_across, double& d_along) const;
 
   SlabGrid grid_;
   double slabs_per_m_, joint_depth_m_;
-  std::array<Octave, 3> octaves_;
-  std::array<double, lattice_size * lattice_size> lattice_;
+  double cos_per_m_, sin_per_m_;  ///< lattice coordinates = turned and scaled x, y
+  std::vector<float> lattice_m_;  ///< heights at the nodes, row by row; the texture repeats after lattice_size of them
 };
 
 }  // namespace tarmac::scenes
