@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -89,7 +90,9 @@ PointErrors score_points(const EvaluationInput& input, const EvaluateSettings& s
     const std::size_t sample = share(map_points, found->second, subject.pairs.size());
     result.sweeps[i] = score_sweep(scorer, sweep, input.labels[i], pair.t, pair.T_map_body, sample, histograms.local());
   };
-  tbb::task_arena arena(std::max(1, settings.threads));
+  const int threads = std::max(1, settings.threads);
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, input.sweeps.count, 1),

@@ -24,26 +24,34 @@ constexpr std::array kFamilyNames{"point", "deskew", "reference"};
 constexpr std::array kFamilyLabels{"error after first-pose alignment [m]", "error after the sweep's best fit [m]",
                                    "error seen from the reference instant [m]"};
 
-/// One sweep at work: its firings, and the 3x4 matrices that take a point of the sensor straight to its error.
+/// One sweep at work. Poses are taken as seen from the true reference pose, in the body's frame there: small numbers
+/// even where the world's origin is far, and one 3x4 matrix a firing that takes a point of the sensor straight to its
+/// error.
 class SweepScoring {
  public:
   SweepScoring(const PointScorer& scorer, const LidarSweep& sweep, const sim::truth::PointLabels& labels,
                Time reference, const SE3& T_map_body_reference)
-      : s_(scorer),
-        sweep_(sweep),
-        labels_(labels),
-        firings_(firings_of(labels, scorer.estimate, scorer.truth)),
-        T_reference_map_(T_map_body_reference.inverse()),
-        T_reference_world_(scorer.truth.pose(reference).inverse()) {}
+      : s_(scorer), sweep_(sweep), labels_(labels), firings_(firings_of(labels, scorer.estimate, scorer.truth)) {
+    const SE3 T_reference_world = scorer.truth.pose(reference).inverse();
+    const SE3 T_reference_map = T_map_body_reference.inverse();
+    A_first_ = (T_reference_world * scorer.A_first * T_map_body_reference).matrix().topRows<3>();
+    A_se3_ = (T_reference_world * scorer.A_se3 * T_map_body_reference).matrix().topRows<3>();
+    seen_.resize(firings_.size());
+    for (std::size_t f = 0; f < firings_.size(); ++f) {
+      if (!firings_[f].covered) continue;
+      seen_[f].estimate = (T_reference_map * (firings_[f].T_map_body * scorer.T_body_lidar_nominal)).matrix();
+      seen_[f].truth = (T_reference_world * (firings_[f].T_world_body * scorer.T_body_lidar_true)).matrix();
+    }
+  }
 
   void score(SweepErrors& out, PointHistograms& histograms) const {
     const Matrix34 A_deskew = fit_sweep().matrix().topRows<3>();
-    for (const Firing& firing : firings_) {
-      if (!firing.covered) {
-        for (std::size_t i = firing.first; i < firing.last; ++i) out.points += is_finite(i);
-        continue;
+    for (std::size_t f = 0; f < firings_.size(); ++f) {
+      if (firings_[f].covered) {
+        score_firing(firings_[f], seen_[f], A_deskew, out, histograms);
+      } else {
+        for (std::size_t i = firings_[f].first; i < firings_[f].last; ++i) out.points += is_finite(i);
       }
-      score_firing(firing, A_deskew, out, histograms);
     }
     score_shear(out);
   }
@@ -74,17 +82,17 @@ class SweepScoring {
     return std::isfinite(sweep_.x_m[i]) && std::isfinite(sweep_.y_m[i]) && std::isfinite(sweep_.z_m[i]);
   }
 
-  /// Both motions as seen from the reference instant: small numbers even where the world's origin is far.
-  SE3 estimated_from_reference(const Firing& f) const {
-    return T_reference_map_ * f.T_map_body * s_.T_body_lidar_nominal;
-  }
-  SE3 true_from_reference(const Firing& f) const { return T_reference_world_ * f.T_world_body * s_.T_body_lidar_true; }
+  /// The poses of the LiDAR at one firing.
+  struct Seen {
+    Eigen::Matrix4d estimate, truth;
+  };
 
   /// The rigid motion, in the reference body's frame, that carries the estimate's static points onto the true ones
   /// best.
   SE3 fit_sweep() const {
     Eigen::Matrix4d cross = Eigen::Matrix4d::Zero();  // sum of (y, 1) (x, 1)^T
-    for (const Firing& firing : firings_) {
+    for (std::size_t f = 0; f < firings_.size(); ++f) {
+      const Firing& firing = firings_[f];
       if (!firing.covered) continue;
       Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();  // sum of (p, 1) (p, 1)^T
       for (std::size_t i = firing.first; i < firing.last; ++i) {
@@ -92,7 +100,7 @@ class SweepScoring {
         const Eigen::Vector4d p = sweep_.point(i).homogeneous();
         moments.noalias() += p * p.transpose();
       }
-      cross += true_from_reference(firing).matrix() * moments * estimated_from_reference(firing).matrix().transpose();
+      cross += seen_[f].truth * moments * seen_[f].estimate.transpose();
     }
     const double n = cross(3, 3);
     if (n == 0) return SE3::Identity();
@@ -105,14 +113,12 @@ class SweepScoring {
     return A;
   }
 
-  void score_firing(const Firing& firing, const Matrix34& A_deskew, SweepErrors& out, PointHistograms& h) const {
-    const Eigen::Matrix4d estimate = estimated_from_reference(firing).matrix();
-    const Matrix34 truth = true_from_reference(firing).matrix().topRows<3>();
-    const SE3 T_map_lidar = firing.T_map_body * s_.T_body_lidar_nominal;
-    const Matrix34 truth_world = (firing.T_world_body * s_.T_body_lidar_true).matrix().topRows<3>();
-    const std::array<Matrix34, kPointFamilies> to_error{(s_.A_first * T_map_lidar).matrix().topRows<3>() - truth_world,
-                                                        A_deskew * estimate - truth, estimate.topRows<3>() - truth};
-    const Matrix34 to_error_se3 = (s_.A_se3 * T_map_lidar).matrix().topRows<3>() - truth_world;
+  void score_firing(const Firing& firing, const Seen& seen, const Matrix34& A_deskew, SweepErrors& out,
+                    PointHistograms& h) const {
+    const Matrix34 truth = seen.truth.topRows<3>();
+    const std::array<Matrix34, kPointFamilies> to_error{
+        A_first_ * seen.estimate - truth, A_deskew * seen.estimate - truth, seen.estimate.topRows<3>() - truth};
+    const Matrix34 to_error_se3 = A_se3_ * seen.estimate - truth;
     const std::size_t bin = phase_bin(firing.t);
     std::array<SquaredSum, kPointFamilies> sums;
 
@@ -162,7 +168,8 @@ class SweepScoring {
   const LidarSweep& sweep_;
   const sim::truth::PointLabels& labels_;
   std::vector<Firing> firings_;
-  SE3 T_reference_map_, T_reference_world_;
+  std::vector<Seen> seen_;  ///< one a firing; unset where it is not covered
+  Matrix34 A_first_, A_se3_;
 };
 
 template <class Get>

@@ -1,7 +1,7 @@
 #include "sim/simulate.h"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <time.h>
 
 #include <algorithm>
@@ -67,9 +67,7 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
                            const std::filesystem::path& recording_folder, const std::filesystem::path& truth_folder,
                            const Progress& progress) {
   const Stopwatch watch;
-  const int threads = std::max(1, settings.threads);
-  // More threads than processors too, when that is asked for; without this TBB would quietly give fewer.
-  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const int threads = std::clamp(settings.threads, 1, tbb::info::default_concurrency());
   const RigOptions options = read_rig(input.rig);
   const lidar::Profile& profile = lidar::profile(options.lidar.model);
   const Rig rig = data_sheet(options);

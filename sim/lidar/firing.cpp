@@ -98,12 +98,14 @@ std::vector<std::uint32_t> FiringTable::tiles(std::size_t cycles) const {
     const double rise = group.size() < 2 ? 0
                                          : (elevation_rad_[group.back()] - elevation_rad_[group.front()]) /
                                                static_cast<double>(group.size() - 1);
-    std::size_t high = 1;  // channels in a tile: as many as make it most nearly square
+    std::size_t high = 1;  // channels in a tile
     for (const std::size_t h : {2, 4, 8, 16}) {
-      const auto extent = [&](std::size_t n) {
-        return std::max(static_cast<double>(n - 1) * rise, static_cast<double>(tile / n - 1) * step_rad_);
+      // Rays of unequal elevation meet the ground far apart: height costs several times what width does (measured on
+      // the stand: one row of 16 is a third faster than 4 x 4 where rows are 1.3 degrees apart and columns 0.35).
+      const auto cost = [&](std::size_t n) {
+        return 4 * static_cast<double>(n - 1) * rise + static_cast<double>(tile / n - 1) * step_rad_;
       };
-      if (extent(h) < extent(high)) high = h;
+      if (cost(h) < cost(high)) high = h;
     }
     const std::size_t wide = tile / high;
     for (std::size_t k = 0; k < cycles; k += wide)

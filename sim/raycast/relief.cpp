@@ -7,7 +7,7 @@
 namespace tarmac::sim::raycast {
 namespace {
 
-constexpr double tolerance_m = 20e-6;  // of height
+constexpr double tolerance_m = 50e-6;  // of height
 constexpr double grazing_cosine = 0.01;
 constexpr int max_iterations = 40;
 

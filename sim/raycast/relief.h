@@ -15,8 +15,8 @@ struct ReliefHit {
 /// The ray o + t d (world axes, |d| = 1) meets the macro plane at t_macro_m in p; `normal` is the plane's unit normal,
 /// turned towards the sensor. With h the height over the plane along that normal, what is sought is a root of
 ///   f(t) = (t - t_macro) n'd - h(x(t), y(t))          f'(t) = n'd - grad h' (dx, dy)
-/// One Newton step from t_macro settles smooth texture seen from above. Where the step leaves more than 20 micrometres
-/// it is repeated, inside a bracket, so that the result always lies on the relief.
+/// One Newton step from t_macro settles smooth texture seen from above. Where the step leaves more than 50 micrometres
+/// of height it is repeated, inside a bracket, so that the result always lies on the relief.
 ///
 /// At grazing incidence a ray may cross the relief several times; the crossing found is near t_macro and need not be
 /// the first, for crests do not shade the troughs behind them. Below |n'd| = 0.01 (0.6 degrees) that question has no

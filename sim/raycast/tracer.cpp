@@ -20,6 +20,7 @@ namespace {
 using core::Duration;
 using core::SE3;
 using core::Time;
+using Eigen::Vector3d;
 
 // Origins are rounded to this grid to find the base: near enough for single precision, and rarely another one.
 constexpr double base_grid_m = 64;
@@ -54,6 +55,15 @@ std::string choose_isa(bool fast) {
       "this processor has no AVX2, which reproducible recordings are pinned to; --fast takes what there is");
 }
 
+struct Frame {
+  Eigen::Matrix3d R;
+  Vector3d p;
+};
+
+Frame frame_of(const SE3& T) {
+  return {T.linear(), T.translation()};
+}
+
 struct MeshData {
   EmbreeScene scene;
   std::vector<TrianglePlane> planes;
@@ -78,6 +88,7 @@ struct Tracer::State {
   std::string isa;
   Device device;
   std::vector<MeshData> meshes;
+  std::vector<Frame> T_parent_mesh;  // of each instance
   std::mutex mutex;
   std::map<Cell, EmbreeScene> static_scenes;  // built when a sweep first starts in the cell, kept
 
@@ -95,11 +106,11 @@ struct SweepTracer::State {
   EmbreeScene moving_scene;  // null when no actor is in range
   std::size_t actors = 0;
 
-  using PoseCache = std::unordered_map<std::uint64_t, SE3>;
+  using PoseCache = std::unordered_map<std::uint64_t, Frame>;  // by instance and time
   void load(const Rays& rays, std::span<const std::uint32_t> lanes, RTCRayHit16& packet, int* valid) const;
   void finish(const Rays& rays, const RTCRayHit16& packet, std::size_t lane, std::size_t i, PoseCache& poses,
               Hits& hits) const;
-  SE3 T_base_mesh(const scenes::Instance& instance, std::int32_t t_ns, PoseCache& poses) const;
+  const Frame& T_world_mesh(std::uint32_t id, std::int32_t t_ns, PoseCache& poses) const;
 };
 
 RTCScene Tracer::State::static_scene(const Cell& cell) {
@@ -135,6 +146,8 @@ Tracer::Tracer(std::shared_ptr<const scenes::Scene> scene, const TracerSettings&
   state_->scene = std::move(scene);
   state_->isa = choose_isa(settings.fast);
   state_->device = new_device(fmt::format("isa={},threads={}", state_->isa, std::max(1, settings.threads)));
+  for (const scenes::Instance& instance : state_->scene->instances)
+    state_->T_parent_mesh.push_back(frame_of(instance.T_parent_mesh));
   for (const scenes::Mesh& mesh : state_->scene->meshes)
     state_->meshes.push_back({mesh_scene(state_->device.get(), mesh), planes_of(mesh)});
 }
@@ -241,14 +254,16 @@ void SweepTracer::State::load(const Rays& rays, std::span<const std::uint32_t> l
   }
 }
 
-SE3 SweepTracer::State::T_base_mesh(const scenes::Instance& instance, std::int32_t t_ns, PoseCache& poses) const {
-  if (instance.actor < 0) return relative_to(base, instance.T_parent_mesh);
-  const std::uint64_t key = (static_cast<std::uint64_t>(instance.actor) << 32) | static_cast<std::uint32_t>(t_ns);
+const Frame& SweepTracer::State::T_world_mesh(std::uint32_t id, std::int32_t t_ns, PoseCache& poses) const {
+  const scenes::Instance& instance = tracer->scene->instances[id];
+  if (instance.actor < 0) return tracer->T_parent_mesh[id];
+  const std::uint64_t key = (static_cast<std::uint64_t>(id) << 32) | static_cast<std::uint32_t>(t_ns);
   const auto [entry, is_new] = poses.try_emplace(key);
-  if (is_new)
-    entry->second =
-        tracer->scene->actors[static_cast<std::size_t>(instance.actor)].motion->T_world_actor(begin + Duration(t_ns));
-  return relative_to(base, entry->second * instance.T_parent_mesh);
+  if (is_new) {
+    const scenes::Actor& actor = tracer->scene->actors[static_cast<std::size_t>(instance.actor)];
+    entry->second = frame_of(actor.motion->T_world_actor(begin + Duration(t_ns)) * instance.T_parent_mesh);
+  }
+  return entry->second;
 }
 
 void SweepTracer::State::finish(const Rays& rays, const RTCRayHit16& packet, std::size_t lane, std::size_t i,
@@ -264,14 +279,14 @@ void SweepTracer::State::finish(const Rays& rays, const RTCRayHit16& packet, std
   const std::uint32_t id = packet.hit.instID[0][lane];
   const std::uint32_t triangle = packet.hit.primID[lane];
   const scenes::Instance& instance = scene.instances[id];
-  const SE3 T = T_base_mesh(instance, rays.t_ns[i], poses);
+  const Frame& T = T_world_mesh(id, rays.t_ns[i], poses);
   const TrianglePlane& plane = tracer->meshes[instance.mesh].planes[triangle];
 
   const Eigen::Vector3d o(rays.ox[i], rays.oy[i], rays.oz[i]), d(rays.dx[i], rays.dy[i], rays.dz[i]);
-  Eigen::Vector3d n = T.linear() * plane.normal;
+  Eigen::Vector3d n = T.R * plane.normal;
   double nd = n.dot(d);
   double t = packet.ray.tfar[lane];
-  const double exact = (plane.offset_m + n.dot(T.translation() - o)) / nd;
+  const double exact = (plane.offset_m + n.dot(T.p - (base + o))) / nd;
   if (std::abs(exact - t) < max_correction_m) t = exact;  // false as well when the plane holds the ray (not a number)
   if (nd > 0) {
     n = -n;

@@ -8,6 +8,7 @@ import sys
 
 
 def compiles_alone(compiler, flags, header):
+    # From standard input, quoted includes are looked up in the working folder: `main` makes that the root.
     # Twice: a header without a guard shows too.
     text = f'#include "{header}"\n#include "{header}"\n'
     return subprocess.run([compiler, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wshadow", *flags, "-x", "c++", "-"],
@@ -16,6 +17,7 @@ def compiles_alone(compiler, flags, header):
 
 def main(arguments):
     compiler, root, folder, includes = arguments
+    os.chdir(root)
     flags = ["-I", root] + [flag for path in includes.split(";") if path for flag in ("-isystem", path)]
     headers = sorted(path.relative_to(root).as_posix() for path in pathlib.Path(root, folder).rglob("*.h"))
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -42,6 +43,9 @@ struct ModelCase {
   SegmentModel model;
   const char* name;
 };
+void PrintTo(const ModelCase& model, std::ostream* out) {
+  *out << model.name;
+}
 
 class EveryModel : public ::testing::TestWithParam<ModelCase> {
  protected:

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "core/error.h"
 #include "core/files.h"
 #include "core/random.h"
@@ -128,6 +130,9 @@ struct BadText {
   const char* where;
   const char* expected;
 };
+void PrintTo(const BadText& bad, std::ostream* out) {
+  *out << bad.what;
+}
 
 class MalformedTum : public ::testing::TestWithParam<BadText> {};
 

@@ -12,14 +12,6 @@
 namespace tarmac::tools {
 namespace {
 
-metrics::Alignment alignment_of(const std::string& name) {
-  if (name == "none") return metrics::Alignment::none;
-  if (name == "first-pose") return metrics::Alignment::first_pose;
-  if (name == "yaw-pos") return metrics::Alignment::yaw_pos;
-  if (name == "sim3") return metrics::Alignment::sim3;
-  return metrics::Alignment::se3;
-}
-
 std::vector<metrics::StampedPose> poses_of(const std::string& file) {
   std::vector<metrics::StampedPose> poses;
   for (const io::StampedPose& pose : io::read_trajectory(file)) poses.emplace_back(pose.t, pose.T);
@@ -31,7 +23,7 @@ int evaluate_files(const EvaluateArguments& arguments, const CommonArguments& co
     throw core::InputError("evaluate: --truth and --estimate belong together; expected both, or folders of runs");
   }
   metrics::ForeignSettings settings;
-  settings.alignment = alignment_of(arguments.align);
+  settings.alignment = metrics::alignment(arguments.align);
   const metrics::ForeignEvaluation result =
       metrics::evaluate_poses(poses_of(arguments.truth), poses_of(arguments.estimate), settings);
   print_rows(result.rows, common.json);

@@ -36,6 +36,21 @@ fs::path trajectory_of(const TransferArguments& arguments) {
   return file;
 }
 
+/// One pose a sweep, at the instant that the export's times.txt names.
+std::vector<io::StampedPose> poses_at_mid_sweep(const core::Estimate& estimate) {
+  std::vector<io::StampedPose> poses;
+  for (const core::SweepResult& sweep : estimate.sweeps) {
+    const core::Time middle = sweep.begin + (sweep.end - sweep.begin) / 2;
+    if (!estimate.headline().covers(middle)) {
+      throw core::InputError(fmt::format(
+          "{}: sweep {} has no pose, and KITTI's poses.txt needs one a sweep; export as tum, or the recording alone",
+          estimate.estimator, sweep.index));
+    }
+    poses.push_back({middle, estimate.headline().pose(middle)});
+  }
+  return poses;
+}
+
 }  // namespace
 
 int import_command(const TransferArguments& arguments, const CommonArguments& common) {
@@ -63,12 +78,9 @@ int export_command(const TransferArguments& arguments, const CommonArguments& co
     io::export_plain(recording, arguments.to, console.progress("export"));
   } else {
     io::export_kitti(recording, arguments.to, console.progress("export"));
-    const fs::path estimate_file = fs::path(arguments.from) / arguments.estimator / "trajectory.bin";
     if (!arguments.estimator.empty()) {
-      std::vector<io::StampedPose> poses;
-      for (const core::SweepResult& sweep : core::load_estimate(estimate_file).sweeps)
-        poses.push_back({sweep.reference, sweep.T_map_body});
-      io::write_kitti_poses(fs::path(arguments.to) / "poses.txt", poses);
+      const fs::path file = fs::path(arguments.from) / arguments.estimator / "trajectory.bin";
+      io::write_kitti_poses(fs::path(arguments.to) / "poses.txt", poses_at_mid_sweep(core::load_estimate(file)));
     }
   }
   fmt::print("{}\n", arguments.to);

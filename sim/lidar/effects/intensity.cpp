@@ -25,7 +25,7 @@ void Intensity::operator()(Echoes& echoes) const {
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     const float value = calibrated(echoes.signal[i]);
     const float noisy = value + echoes.draws[i] * (counts_of_noise + share_of_noise * value);
-    echoes.intensity[i] = std::floor(std::clamp(noisy, 0.0f, 255.0f) + 0.5f);
+    echoes.intensity[i] = static_cast<float>(static_cast<int>(std::clamp(noisy, 0.0f, 255.0f) + 0.5f));
   }
 }
 

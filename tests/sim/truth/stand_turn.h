@@ -9,9 +9,7 @@
 namespace tarmac::tests {
 
 /// The motion block of the shipped scenario.
-inline core::ConfigNode stand_turn_motion() {
-  return core::ConfigNode::load(TARMAC_SCENARIOS "/stand-turn.yaml").child("motion");
-}
+core::ConfigNode stand_turn_motion();
 
 /// Long drives take a second to build: tests that need no more ask for their first seconds only.
 inline std::shared_ptr<const core::SmoothTrajectory> stand_turn(
