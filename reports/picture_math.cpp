@@ -50,14 +50,14 @@ ErrorScale error_scale(const std::vector<const metrics::MapSample*>& maps) {
       if (!moving && std::isfinite(map->error_m[i])) errors_m.push_back(map->error_m[i]);
     }
     if (errors_m.empty()) continue;
-    lows_m.push_back(quantile(errors_m, 0.05));
+    lows_m.push_back(quantile(errors_m, 0.25));
     highs_m.push_back(quantile(errors_m, 0.99));
   }
   if (lows_m.empty()) return {};
   const double smallest_m = 1e-6;  // a replay of the truth has errors of 0, which no logarithm takes
   const double low_m = round_125(std::max(smallest_m, quantile(lows_m, 0.5)), -1);
   const double high_m = round_125(std::max(smallest_m, quantile(highs_m, 0.5)), +1);
-  return {low_m, std::max(high_m, 10 * low_m)};
+  return {std::min(low_m, high_m / 10), high_m};
 }
 
 double place_on(const ErrorScale& scale, double error_m) {

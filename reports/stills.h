@@ -36,8 +36,8 @@ TopView top_view(const Eigen::Vector2d& min_m, const Eigen::Vector2d& max_m, int
 struct ErrorScale {
   double low_m = 0.01, high_m = 1;
 };
-/// 1-2-5 steps around the 5 % and 99 % quantiles of the middle map (the lower one of two): one scale for all pictures
-/// of a report, which a single method that is far off does not stretch.
+/// 1-2-5 steps around the 25 % and 99 % quantiles of the middle map (the lower one of two), at least one decade: one
+/// scale for all pictures of a report, which a single method that is far off does not stretch.
 ErrorScale error_scale(const std::vector<const metrics::MapSample*>& maps);
 /// sRGB in [0, 1] at a place of the scale in [0, 1]; NaN is grey.
 Eigen::Vector3f error_color(double place);

@@ -51,13 +51,21 @@ TEST(ErrorScaling, SpansTheMapsInRoundSteps) {
     sample.moving.push_back(k == 500);
   }
   const ErrorScale scale = error_scale({&sample});
-  EXPECT_DOUBLE_EQ(scale.low_m, 0.05);  // the 5 % quantile is 0.05
-  EXPECT_DOUBLE_EQ(scale.high_m, 1);    // the 99 % quantile is 0.99
-  EXPECT_DOUBLE_EQ(place_on(scale, 0.05), 0);
-  EXPECT_DOUBLE_EQ(place_on(scale, 1), 1);
-  EXPECT_NEAR(place_on(scale, std::sqrt(0.05)), 0.5, 1e-12) << "logarithmic";
+  EXPECT_DOUBLE_EQ(scale.high_m, 1);   // the 99 % quantile is 0.99
+  EXPECT_DOUBLE_EQ(scale.low_m, 0.1);  // the 25 % quantile is 0.25: less than a decade below
+  EXPECT_DOUBLE_EQ(place_on(scale, scale.low_m), 0);
+  EXPECT_DOUBLE_EQ(place_on(scale, scale.high_m), 1);
+  EXPECT_NEAR(place_on(scale, std::sqrt(scale.low_m * scale.high_m)), 0.5, 1e-12) << "logarithmic";
   EXPECT_DOUBLE_EQ(place_on(scale, 0), 0);
   EXPECT_DOUBLE_EQ(place_on(scale, 100), 1);
+}
+
+TEST(ErrorScaling, ReachesDownToTheQuarterOfPointsThatAreBest) {
+  metrics::MapSample sample;
+  for (int k = 0; k < 1000; ++k) sample.error_m.push_back(k < 400 ? 0.003f : 0.8f);
+  const ErrorScale scale = error_scale({&sample});
+  EXPECT_DOUBLE_EQ(scale.low_m, 0.002);
+  EXPECT_DOUBLE_EQ(scale.high_m, 1);
 }
 
 TEST(ErrorScaling, IsNotStretchedByOneMethodThatIsFarOff) {
