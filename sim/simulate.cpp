@@ -63,6 +63,13 @@ std::size_t write_imu(const RigOptions& options, const SimulationInput& input, R
 
 }  // namespace
 
+void check(const SimulationInput& input) {
+  const RigOptions options = read_rig(input.rig);
+  sweeps_within(
+      lidar::FiringTable(lidar::profile(options.lidar.model), {options.lidar.columns, options.lidar.sweep_rate_hz}),
+      input);
+}
+
 SimulationSummary simulate(const SimulationInput& input, const SimulationSettings& settings,
                            const std::filesystem::path& recording_folder, const std::filesystem::path& truth_folder,
                            const Progress& progress) {
@@ -97,6 +104,7 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   summary.points = totals.points;
   summary.trace_cpu_s = totals.trace_cpu_s;
   summary.isa = tracer->isa();
+  summary.threads = threads;
   summary.wall_s = watch.wall_s();
   summary.cpu_s = watch.cpu_s();
   summary.real_time_factor = to_s(input.duration) / summary.wall_s;

@@ -41,7 +41,11 @@ struct SimulationSummary {
   double trace_cpu_s = 0;       ///< of that inside the ray tracer
   double real_time_factor = 0;  ///< simulated seconds per wall second
   std::string isa;              ///< instruction set of the tracer: "avx2"
+  int threads = 1;              ///< that were used: as asked for, at most the processors there are
 };
+
+/// Throws InputError when simulate() would refuse the input.
+void check(const SimulationInput& input);
 
 /// Writes `recording_folder` (finished last) and `truth_folder`. Same input, same bytes, at any number of threads.
 /// Throws InputError for bad rig options; whatever `progress` throws leaves an incomplete recording that is refused.

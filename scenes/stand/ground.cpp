@@ -104,7 +104,7 @@ double octave(const core::RandomStream& random, std::uint32_t id, int period, do
   return low + wt * (high - low);
 }
 
-constexpr double node_m = 0.05;  ///< the finest grain of the texture
+constexpr double node_m = 0.05;   ///< the finest grain of the texture
 constexpr double turn_rad = 0.4;  ///< the lattice is parallel neither to joints nor to roads
 
 }  // namespace

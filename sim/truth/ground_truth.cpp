@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -99,6 +100,34 @@ std::vector<PointLabels> GroundTruth::labels(std::size_t lidar) const {
   return sweeps;
 }
 
+namespace {
+
+/// The motion is rebuilt by this program; truth.tum was written by the one that traced the rays. Where they differ, the
+/// code of a motion has changed since, and the recording would be scored against a drive that never was.
+void check_rebuilt(const GroundTruth& truth) {
+  const std::filesystem::path file = truth.folder / "truth.tum";
+  const std::string text = read_file(file);
+  constexpr int kSamples = 16;
+  constexpr double kTolerance_m = 1e-9;  // twelve decimals are written
+  for (int k = 0; k < kSamples; ++k) {
+    std::size_t at = text.size() / kSamples * static_cast<std::size_t>(k);
+    if (k > 0) at = text.find('\n', at) + 1;
+    while (at < text.size() && text[at] == '#') at = text.find('\n', at) + 1;
+    long long seconds = 0, nanoseconds = 0;
+    Eigen::Vector3d p;
+    if (std::sscanf(text.c_str() + at, "%lld.%9lld %lf %lf %lf", &seconds, &nanoseconds, &p.x(), &p.y(), &p.z()) != 5)
+      throw DamagedFile(fmt::format("{}: has no pose at byte {}; simulate again", file.string(), at));
+    const Time t = time_from_ns(seconds * 1'000'000'000 + nanoseconds);
+    if ((truth.motion->pose(t).translation() - p).norm() > kTolerance_m)
+      throw InputError(
+          fmt::format("{}: another version of this program made it: its pose at {} ns is not the one that "
+                      "this version's motion has; simulate again",
+                      file.string(), to_ns(t)));
+  }
+}
+
+}  // namespace
+
 GroundTruth load_ground_truth(const std::filesystem::path& truth_folder) {
   const std::filesystem::path scenario = truth_folder / "scenario.yaml", rig = truth_folder / "rig.json";
   const std::filesystem::path faults = truth_folder / "faults.json";
@@ -118,6 +147,7 @@ GroundTruth load_ground_truth(const std::filesystem::path& truth_folder) {
   const ConfigNode scene = truth.config.child("scene");
   truth.motion = make_motion(truth.config.child("motion"), duration_from_s(basics.duration_s),
                              scenes::scene_of(scene).ground(scene, truth.seed), truth.seed);
+  check_rebuilt(truth);
   return truth;
 }
 

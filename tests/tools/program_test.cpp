@@ -207,8 +207,49 @@ TEST_F(Program, BadInputIsRefusedWithFileLineAndField) {
   expect_refused({"evaluate", "--truth", "short.yaml", "--estimate", "short.yaml"}, HasSubstr("short.yaml"));
   expect_refused({"describe", "sensor", "vlp-61"}, HasSubstr("vlp-16"));
   expect_refused({"fly"}, HasSubstr("fly"));
+  expect_refused({"run"}, HasSubstr("scenario"));
+  expect_refused({"simulate", "short.yaml"}, HasSubstr("--out"));
+  expect_refused({"evaluate", ".", "--align", "sim3"}, HasSubstr("--align"));
+  expect_refused({"run", "short.yaml", "-o", "bad", "--set", "duration_s=0.01"}, HasSubstr("whole sweep"));
+  core::write_file(path("names.yaml"), "estimators: {truth: {command: [a]}, ../up: {command: [a]}}\n");
+  expect_refused({"run", "short.yaml", "-o", "bad", "-e", "truth", "--config", "names.yaml"},
+                 HasSubstr("cannot name an estimator"));
+  expect_refused({"run", "short.yaml", "-o", "bad", "-e", "../up", "--config", "names.yaml"},
+                 HasSubstr("cannot name an estimator"));
   expect_refused({"simulat"}, HasSubstr("did you mean 'simulate'"));
   EXPECT_FALSE(fs::exists(path("bad"))) << "something was written for a scenario that is refused";
+}
+
+TEST_F(Program, RefusedInputLeavesAnEarlierRunAsItWas) {
+  fs::copy(finished_run(), path("kept"), fs::copy_options::recursive);
+  const std::string before = core::read_file(path("kept") / "provenance.json");
+  EXPECT_EQ(tarmac({"run", "short.yaml", "-o", "kept", "--set", "duration_s=0.01"}).code, 2);
+  EXPECT_EQ(tarmac({"run", "short.yaml", "-o", "kept", "--seed", "1..2"}).code, 2)
+      << "one seed and several in one folder";
+  EXPECT_EQ(core::read_file(path("kept") / "provenance.json"), before);
+  EXPECT_TRUE(fs::is_regular_file(path("kept") / "kiss-icp" / "evaluation.json"));
+  EXPECT_TRUE(fs::is_regular_file(path("kept") / "report.html"));
+}
+
+TEST_F(Program, EstimatesOfAnotherRecordingAreNotScored) {
+  fs::copy(finished_run(), path("mixed"), fs::copy_options::recursive);
+  std::string outcome = core::read_file(path("mixed") / "rigid-icp" / "outcome.json");
+  const std::string hash = core::Recording::open(path("mixed") / "recording").hash();
+  outcome.replace(outcome.find(hash), hash.size(), "0123456789abcdef");
+  core::write_file(path("mixed") / "rigid-icp" / "outcome.json", outcome);
+  const Ended ended = tarmac({"evaluate", "mixed"});
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_THAT(ended.text, AllOf(HasSubstr("rigid-icp"), HasSubstr("0123456789abcdef")));
+}
+
+TEST_F(Program, TruthOfAnotherVersionIsNotScored) {
+  fs::copy(finished_run(), path("older"), fs::copy_options::recursive);
+  std::string motion = core::read_file(path("older") / "truth" / "scenario.yaml");
+  motion.replace(motion.find("to_m_s: 4"), 9, "to_m_s: 5");
+  core::write_file(path("older") / "truth" / "scenario.yaml", motion);
+  const Ended ended = tarmac({"evaluate", "older"});
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_THAT(ended.text, HasSubstr("truth.tum"));
 }
 
 TEST_F(Program, TruncatedRecordingIsRefused) {
@@ -223,23 +264,25 @@ TEST_F(Program, TruncatedRecordingIsRefused) {
 }
 
 TEST_F(Program, InterruptLeavesNothingThatIsTakenForWhole) {
+  // Over a finished run: its marks of being whole must be gone, not only never written.
+  fs::copy(finished_run(), path("stopped"), fs::copy_options::recursive);
   ChildRequest request;
   std::string line = "exec";
   for (const std::string& word : command({"run", "short.yaml", "--set", "duration_s=60", "-o", "stopped"}))
     line += " '" + word + "'";
-  // The shell's child gets SIGINT as from a terminal, once the recording has begun.
-  request.command = {
-      "sh", "-c",
-      "(" + line +
-          ") & child=$!; i=0; while [ ! -e stopped/recording/lidar0.chunks ] && [ $i -lt 400 ]; do sleep 0.05; "
-          "i=$((i+1)); done; sleep 0.2; kill -TERM $child; wait $child"};
+  request.command = {"sh", "-c",
+                     "(" + line +
+                         ") & child=$!; i=0; while [ -e stopped/provenance.json ] && [ $i -lt 600 ]; do "
+                         "sleep 0.05; i=$((i+1)); done; sleep 0.3; kill -TERM $child; wait $child"};
   request.working_folder = folder_->path();
   request.log_file = path("stopped.log");
   request.timeout_s = 60;
   const ChildResult result = run_child(request);
   EXPECT_EQ(result.code, 130) << core::read_file(path("stopped.log"));
   EXPECT_FALSE(fs::exists(path("stopped") / "provenance.json"));
+  EXPECT_FALSE(fs::exists(path("stopped") / "report.html"));
   EXPECT_FALSE(fs::exists(path("stopped") / "recording" / "manifest.json"));
+  EXPECT_FALSE(fs::exists(path("stopped") / "kiss-icp"));
   EXPECT_EQ(tarmac({"estimate", "stopped", "-o", "stopped-out"}).code, 2);
   EXPECT_EQ(tarmac({"evaluate", "stopped"}).code, 2);
 }

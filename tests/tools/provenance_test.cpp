@@ -59,7 +59,7 @@ TEST(EstimatorFolders, WithoutAnOutcomeAreNotFinished) {
   const PrivateFolder folder;
   fs::create_directory(folder.path() / "half");
   fs::create_directory(folder.path() / "whole");
-  save_outcome(folder.path() / "whole", {"whole", "crashed", "signal 11", 1, 2, 3, 1});
+  save_outcome(folder.path() / "whole", {"whole", "crashed", "signal 11", 1, 2, 3, 1, "00ff"});
   const auto folders = estimator_folders(RunFolder{folder.path()});
   ASSERT_EQ(folders.size(), 1u);
   EXPECT_EQ(load_outcome(folders[0]).status, "crashed");

@@ -47,6 +47,12 @@ Source find_source(const fs::path& from, const fs::path& out, const Console& con
   return source;
 }
 
+/// "out/recording/" names the same folder as "out/recording", and so has the same parent.
+fs::path without_trailing_slash(const fs::path& path) {
+  const fs::path absolute = fs::absolute(path).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
 std::vector<core::ConfigNode> blocks_of(const EstimateArguments& arguments) {
   core::ConfigNode config =
       arguments.config.empty() ? core::ConfigNode::parse("{}", "--set") : core::ConfigNode::load(arguments.config);
@@ -69,7 +75,7 @@ int estimate_command(const EstimateArguments& arguments, const CommonArguments& 
   const Console console(common.quiet);
   const auto requests = request_estimators(arguments.estimators, blocks_of(arguments));
   const RunFolder run{arguments.out};
-  Source source = find_source(arguments.recording, run.root, console);
+  Source source = find_source(without_trailing_slash(arguments.recording), run.root, console);
   const core::Recording recording = core::Recording::open(source.recording);
   fs::create_directories(run.root);
   fs::remove(run.provenance());
@@ -82,9 +88,11 @@ int estimate_command(const EstimateArguments& arguments, const CommonArguments& 
   const bool inside = fs::equivalent(source.recording.parent_path(), run.root);
   provenance.recording = inside ? "recording" : absolute_text(source.recording);
   provenance.truth = inside && !source.truth.empty() ? "truth" : absolute_text(source.truth);
-  provenance.command = shell_command(common.words);
+  // Into the folder of the run that made the recording: what made that, and what ran there before, stays said.
+  const std::string command = shell_command(common.words);
+  provenance.command = inside && !provenance.command.empty() ? provenance.command + " && " + command : command;
   provenance.threads = common.threads();
-  provenance.options.clear();
+  if (!inside) provenance.options.clear();
   bool failed = false;
   for (const EstimatorRequest& request : requests)
     provenance.options += fmt::format("{}:\n{}", request.name, resolved_options(request));

@@ -33,6 +33,18 @@ core::ConfigNode find_block(const std::string& name, const std::vector<core::Con
   return {};
 }
 
+/// Names become folders beside the recording and the truth.
+void check_foreign_name(const EstimatorRequest& request) {
+  const std::string& name = request.name;
+  const bool plain = name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_") == std::string::npos &&
+                     name.front() != '-' && name.front() != '_';
+  const bool taken = name == "recording" || name == "truth" || name == "latest";
+  if (plain && !taken) return;
+  request.options.fail(fmt::format("'{}' cannot name an estimator: {}", name,
+                                   taken ? "a run has a folder of that name"
+                                         : "expected small letters, digits, '-' and '_', a letter or digit first"));
+}
+
 EstimatorRequest request_one(const std::string& name, const std::vector<core::ConfigNode>& blocks,
                              const std::vector<std::string>& known) {
   EstimatorRequest request;
@@ -53,6 +65,7 @@ EstimatorRequest request_one(const std::string& name, const std::vector<core::Co
         "`{}: {{command: [...]}}` under `estimators:` in the scenario or in a --config file",
         name, guess.empty() ? "" : fmt::format("; did you mean '{}'?", guess), fmt::join(bundled_names(), ", "), name));
   }
+  check_foreign_name(request);
   request.options.read(request.tool);
   if (request.tool.command.empty()) {
     request.options.fail_at("command", "is missing; expected [program, '{input}', '{output}']");
@@ -73,7 +86,7 @@ void put_in_place(const fs::path& from, const fs::path& to) {
 }
 
 Outcome outcome_of(const EstimatorRequest& request, const ChildResult& child, int threads) {
-  Outcome outcome{request.name, "ok", child.message, child.wall_s, child.cpu_s, child.peak_memory_mb, threads};
+  Outcome outcome{request.name, "ok", child.message, child.wall_s, child.cpu_s, child.peak_memory_mb, threads, {}};
   switch (child.end) {
     case ChildResult::End::not_started:
       outcome.status = "failed";
@@ -144,8 +157,8 @@ void check_bundled(const fs::path& output, Outcome& outcome) {
   }
 }
 
-Outcome run_one(const EstimatorRequest& request, const fs::path& recording_folder, const fs::path& target,
-                const EstimatorRunSettings& settings, const Console& console) {
+Outcome run_one(const EstimatorRequest& request, const fs::path& recording_folder, const std::string& recording_hash,
+                const fs::path& target, const EstimatorRunSettings& settings, const Console& console) {
   const Workplace place(recording_folder, request);
   ChildRequest child =
       request.bundled ? bundled_command(request, settings) : foreign_command(request.tool, place.path());
@@ -156,6 +169,7 @@ Outcome run_one(const EstimatorRequest& request, const fs::path& recording_folde
   const ChildResult result = run_child(child);
 
   Outcome outcome = outcome_of(request, result, request.bundled ? settings.threads : 0);
+  outcome.recording_hash = recording_hash;
   if (request.bundled) {
     check_bundled(place.output(), outcome);
   } else {
@@ -219,9 +233,10 @@ std::vector<Outcome> run_estimators(const std::vector<EstimatorRequest>& request
                                     const Console& console) {
   for (const EstimatorRequest& request : requests) fs::remove_all(folder / request.name);
   fs::create_directories(folder);
+  const std::string hash = core::Recording::open(recording_folder).hash();
   std::vector<Outcome> outcomes;
   for (const EstimatorRequest& request : requests) {
-    outcomes.push_back(run_one(request, recording_folder, folder / request.name, settings, console));
+    outcomes.push_back(run_one(request, recording_folder, hash, folder / request.name, settings, console));
   }
   return outcomes;
 }

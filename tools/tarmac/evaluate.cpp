@@ -23,7 +23,7 @@ int evaluate_files(const EvaluateArguments& arguments, const CommonArguments& co
     throw core::InputError("evaluate: --truth and --estimate belong together; expected both, or folders of runs");
   }
   metrics::ForeignSettings settings;
-  settings.alignment = metrics::alignment(arguments.align);
+  settings.alignment = metrics::alignment(arguments.align.empty() ? "se3" : arguments.align);
   const metrics::ForeignEvaluation result =
       metrics::evaluate_poses(poses_of(arguments.truth), poses_of(arguments.estimate), settings);
   print_rows(result.rows, common.json);
@@ -41,6 +41,9 @@ int evaluate_command(const EvaluateArguments& arguments, const CommonArguments& 
   if (files && !arguments.folders.empty())
     throw core::InputError("evaluate: give folders, or --truth and --estimate, not both");
   if (files) return evaluate_files(arguments, common);
+  if (!arguments.align.empty())
+    throw core::InputError(
+        "evaluate: --align belongs to --truth and --estimate; runs are scored under every alignment");
   if (arguments.folders.empty())
     throw core::InputError("evaluate: expected folders of runs, or --truth FILE --estimate FILE");
   const Console console(common.quiet);

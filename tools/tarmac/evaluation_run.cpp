@@ -53,6 +53,11 @@ std::vector<metrics::Evaluation> evaluate_run(const RunFolder& run, int threads,
   std::vector<metrics::Evaluation> evaluations;
   for (std::size_t i = 0; i < folders.size(); ++i) {
     const Outcome outcome = load_outcome(folders[i]);
+    if (outcome.recording_hash != recording.hash()) {
+      throw core::InputError(
+          fmt::format("{}: ran on recording {}, but the run's recording is {} now; run the estimator again",
+                      folders[i].string(), outcome.recording_hash, recording.hash()));
+    }
     progress(static_cast<double>(i) / static_cast<double>(folders.size()), outcome.estimator);
     evaluations.push_back(evaluate_one(folders[i], outcome, recording, truth, threads));
     metrics::save_evaluation(folders[i], evaluations.back());

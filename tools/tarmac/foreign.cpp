@@ -4,6 +4,7 @@
 
 #include "core/diagnostics.h"
 #include "core/error.h"
+#include "tools/estimate/outputs.h"
 
 namespace tarmac::tools {
 namespace {
@@ -82,15 +83,11 @@ void adopt_foreign_output(const std::string& name, const ForeignTool& tool, cons
     const std::vector<io::StampedPose> poses = io::read_tum(poses_file);
     const core::Recording recording = core::Recording::open(recording_folder);
     const core::Estimate estimate = estimate_from_poses(name, tool, poses, recording);
-    std::vector<io::StampedPose> dense, reference;
-    for (const io::StampedPose& pose : poses) dense.push_back({pose.t, estimate.causal.pose(pose.t)});
-    for (const core::SweepResult& sweep : estimate.sweeps) {
-      if (sweep.status == core::SweepStatus::ok) reference.push_back({sweep.reference, sweep.T_map_body});
-    }
+    const std::vector<io::StampedPose> reference = reference_poses(estimate);
     if (reference.empty()) {
       throw core::InputError("its poses cover the end of no sweep; are its stamps seconds on the recording's clock?");
     }
-    io::write_tum(output / "trajectory.tum", dense);
+    io::write_tum(output / "trajectory.tum", dense_poses(estimate));
     io::write_tum(output / "reference.tum", reference);
     core::save_timing(output / "timing.json", {0, child.wall_s, child.cpu_s, child.peak_memory_mb, {}});
     core::save_estimate(output / "trajectory.bin", estimate);

@@ -124,6 +124,11 @@ void add_commands(CLI::App& app, Arguments& a) {
   }
 }
 
+bool is_command(const CLI::App& app, const std::string& word) {
+  const auto named = app.get_subcommands([&](const CLI::App* command) { return command->get_name() == word; });
+  return !named.empty();
+}
+
 std::string no_such_command(const CLI::App& app, const std::string& word) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -145,7 +150,10 @@ int run_main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
-    if (argc < 2 || argv[1][0] == '-') return app.exit(error) == 0 ? 0 : kBadUsage;
+    if (argc < 2 || argv[1][0] == '-' || is_command(app, argv[1])) {
+      app.exit(error);
+      return kBadUsage;
+    }
     fmt::print(stderr, "error: {}\n", no_such_command(app, argv[1]));
     return kBadUsage;
   } catch (const CLI::ParseError& error) {

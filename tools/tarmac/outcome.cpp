@@ -12,9 +12,10 @@ namespace tarmac::tools {
 using Json = nlohmann::ordered_json;
 
 void save_outcome(const std::filesystem::path& folder, const Outcome& o) {
-  const Json json = {{"estimator", o.estimator}, {"status", o.status}, {"message", o.message},
-                     {"wall_s", o.wall_s},       {"cpu_s", o.cpu_s},   {"peak_memory_mb", o.peak_memory_mb},
-                     {"threads", o.threads}};
+  const Json json = {{"estimator", o.estimator}, {"status", o.status},
+                     {"message", o.message},     {"wall_s", o.wall_s},
+                     {"cpu_s", o.cpu_s},         {"peak_memory_mb", o.peak_memory_mb},
+                     {"threads", o.threads},     {"recording_hash", o.recording_hash}};
   core::write_file(folder / "outcome.json", json.dump(2) + "\n");
 }
 
@@ -30,6 +31,7 @@ Outcome load_outcome(const std::filesystem::path& folder) {
     o.cpu_s = json.at("cpu_s").get<double>();
     o.peak_memory_mb = json.at("peak_memory_mb").get<double>();
     o.threads = json.at("threads").get<int>();
+    o.recording_hash = json.at("recording_hash").get<std::string>();
     return o;
   } catch (const nlohmann::json::exception& error) {
     throw core::DamagedFile(

@@ -12,6 +12,7 @@ struct Outcome {
   std::string message;
   double wall_s = 0, cpu_s = 0, peak_memory_mb = 0;
   int threads = 1;
+  std::string recording_hash;  ///< of the recording that it ran on
   /// Failed runs give exit code 3; a method that says that it cannot start is an answer, not a failure.
   bool failed() const { return status != "ok" && status != "not_initialised"; }
 };

@@ -65,14 +65,17 @@ Json row_json(const metrics::Row& row, const std::string& scenario, std::uint64_
           {"status", row.status}};
 }
 
-/// Estimators in order of first appearance, each with its evaluations.
+/// Estimators in order of first appearance, each with its evaluations; scenarios apart.
 std::vector<std::pair<std::string, std::vector<const metrics::Evaluation*>>> by_estimator(
-    const std::vector<metrics::Evaluation>& evaluations) {
+    const std::vector<metrics::Evaluation>& evaluations, bool one_scenario) {
+  const auto name_of = [&](const metrics::Evaluation& e) {
+    return one_scenario ? e.estimator : e.scenario + "/" + e.estimator;
+  };
   std::vector<std::pair<std::string, std::vector<const metrics::Evaluation*>>> groups;
   for (const metrics::Evaluation& evaluation : evaluations) {
     auto group =
-        std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == evaluation.estimator; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {evaluation.estimator, {}});
+        std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == name_of(evaluation); });
+    if (group == groups.end()) group = groups.insert(groups.end(), {name_of(evaluation), {}});
     group->second.push_back(&evaluation);
   }
   return groups;
@@ -89,12 +92,10 @@ std::string status_text(const std::vector<const metrics::Evaluation*>& seeds) {
 
 std::vector<std::string> pooled_line(const std::string& name, const std::vector<const metrics::Evaluation*>& seeds) {
   std::vector<std::string> line = {name};
+  const auto has_rows = [](const metrics::Evaluation* e) { return !e->rows.empty(); };
   std::vector<metrics::PooledRow> rows;
-  std::vector<const metrics::Evaluation*> with_rows;
-  for (const metrics::Evaluation* e : seeds) {
-    if (!e->rows.empty()) with_rows.push_back(e);
-  }
-  if (!with_rows.empty()) rows = metrics::pool(with_rows);
+  if (std::any_of(seeds.begin(), seeds.end(), has_rows)) rows = metrics::pool(seeds);
+  line.push_back(fmt::format("{} of {}", std::count_if(seeds.begin(), seeds.end(), has_rows), seeds.size()));
   for (const Column& column : kColumns) {
     const auto found =
         std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.row.metric == column.metric; });
@@ -122,15 +123,17 @@ void print_results(const std::vector<metrics::Evaluation>& evaluations, bool jso
     fmt::print("{}\n", rows.dump(1));
     return;
   }
-  const auto groups = by_estimator(evaluations);
-  std::vector<std::vector<std::string>> lines = {{"estimator"}};
+  const bool one_scenario = std::all_of(evaluations.begin(), evaluations.end(),
+                                        [&](const auto& e) { return e.scenario == evaluations.front().scenario; });
+  const auto groups = by_estimator(evaluations, one_scenario);
+  std::vector<std::vector<std::string>> lines = {{"estimator", "runs scored"}};
   for (const Column& column : kColumns) lines[0].emplace_back(column.heading);
   lines[0].emplace_back("status");
   for (const auto& [name, seeds] : groups) lines.push_back(pooled_line(name, seeds));
   print_table(lines);
-  if (!groups.empty() && groups.front().second.size() > 1) {
-    fmt::print("median of {} seeds\n", groups.front().second.size());
-  }
+  const auto several = [](const auto& group) { return group.second.size() > 1; };
+  if (std::any_of(groups.begin(), groups.end(), several))
+    fmt::print("figures are medians over the runs that were scored\n");
 }
 
 void print_estimates(const RunFolder& run, const std::vector<Outcome>& outcomes, bool json) {

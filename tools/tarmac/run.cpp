@@ -1,6 +1,7 @@
 // `tarmac run` and `tarmac simulate`: from a scenario file to a recording, estimates, scores and a page.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "core/error.h"
@@ -31,15 +32,40 @@ struct Plan {
   }
 };
 
-std::vector<core::ConfigNode> estimator_blocks(const scenarios::Scenario& scenario, const std::string& config) {
+std::vector<core::ConfigNode> estimator_blocks(const scenarios::Scenario& scenario, const std::string& config,
+                                               const std::vector<scenarios::Override>& overrides) {
   std::vector<core::ConfigNode> blocks;
   if (!config.empty()) {
-    const core::ConfigNode file = core::ConfigNode::load(config);
+    core::ConfigNode file = core::ConfigNode::load(config);
+    // A block of --config stands in for the scenario's of that name; what --set says holds for either.
+    for (const auto& [key, value] : overrides) {
+      if (key.starts_with("estimators.")) file.set(key, value);
+    }
     file.allow_only({"estimators"});
     blocks.push_back(file.child("estimators"));
   }
   blocks.push_back(scenario.estimators);
   return blocks;
+}
+
+/// Results of one seed and of several lie in one folder differently; mixing them, or seeds of different runs, would
+/// pool what does not belong together.
+void refuse_mixed_layouts(const Plan& plan) {
+  if (!fs::is_directory(plan.out)) return;
+  const auto refuse = [&](const std::string& what) {
+    throw core::InputError(
+        fmt::format("{}: holds {}; give another folder with -o, or remove that first", plan.out.string(), what));
+  };
+  if (plan.seed_folders && fs::exists(RunFolder{plan.out}.provenance())) refuse("a run of one seed");
+  for (const auto& entry : fs::directory_iterator(plan.out)) {
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_directory() || !name.starts_with("seed-") || !fs::exists(RunFolder{entry.path()}.provenance()))
+      continue;
+    const bool ours = plan.seed_folders && std::any_of(plan.seeds.begin(), plan.seeds.end(), [&](std::uint64_t seed) {
+                        return name == fmt::format("seed-{}", seed);
+                      });
+    if (!ours) refuse(fmt::format("{} of an earlier run", name));
+  }
 }
 
 Plan make_plan(const ScenarioArguments& arguments, bool with_estimators) {
@@ -50,12 +76,14 @@ Plan make_plan(const ScenarioArguments& arguments, bool with_estimators) {
   plan.scenario = scenarios::load_scenario(file, overrides);
   check_world(plan.scenario);
   if (with_estimators) {
-    plan.estimators = request_estimators(arguments.estimators, estimator_blocks(plan.scenario, arguments.config));
+    plan.estimators =
+        request_estimators(arguments.estimators, estimator_blocks(plan.scenario, arguments.config, overrides));
   }
   plan.seeds = {static_cast<std::uint64_t>(plan.scenario.seed)};
   if (!arguments.seeds.empty()) plan.seeds = scenarios::parse_seeds(arguments.seeds);
   plan.seed_folders = arguments.seeds.find("..") != std::string::npos;
   plan.out = arguments.out.empty() ? fs::path("out") / plan.scenario.name : fs::path(arguments.out);
+  refuse_mixed_layouts(plan);
   return plan;
 }
 
@@ -63,13 +91,17 @@ Plan make_plan(const ScenarioArguments& arguments, bool with_estimators) {
 Provenance simulate_seed(const Plan& plan, std::uint64_t seed, const ScenarioArguments& arguments,
                          const CommonArguments& common, const Console& console) {
   const RunFolder run = plan.folder(seed);
+  const std::string resolved = resolve_scenario(plan.scenario, seed, plan.estimators);
+  const sim::SimulationInput input = build_world(plan.scenario, seed, resolved);
+  sim::check(input);
+  // Nothing that could be refused is left: now what stands there from before goes, its marks of being whole first.
   fs::create_directories(run.root);
   fs::remove(run.provenance());
+  fs::remove(run.recording() / "manifest.json");
   fs::remove(run.report());
+  fs::remove(plan.out / "report.html");
   for (const fs::path& folder : estimator_folders(run)) fs::remove_all(folder);
-  const std::string resolved = resolve_scenario(plan.scenario, seed, plan.estimators);
   core::write_file(run.scenario(), resolved);
-  const sim::SimulationInput input = build_world(plan.scenario, seed, resolved);
   const sim::SimulationSummary summary =
       sim::simulate(input, {.threads = common.threads(), .fast = arguments.fast}, run.recording(), run.truth(),
                     console.progress(plan.seed_folders ? fmt::format("simulate {}", seed) : "simulate"));
@@ -82,7 +114,7 @@ Provenance simulate_seed(const Plan& plan, std::uint64_t seed, const ScenarioArg
   provenance.truth = "truth";
   provenance.command = shell_command(common.words);
   provenance.isa = summary.isa;
-  provenance.threads = common.threads();
+  provenance.threads = summary.threads;
   provenance.simulate_wall_s = summary.wall_s;
   provenance.simulate_real_time_factor = summary.real_time_factor;
   provenance.simulate_mrays_per_s = summary.wall_s > 0 ? 1e-6 * static_cast<double>(summary.rays) / summary.wall_s : 0;

@@ -22,7 +22,7 @@ fs::path recording_of(const fs::path& from) {
       fmt::format("{}: is no recording and no folder of a run (no manifest.json, no recording/)", from.string()));
 }
 
-/// The trajectory that `export` writes: an estimator's reference poses, or the truth.
+/// The trajectory that `export` writes: an estimator's dense one, or the truth.
 fs::path trajectory_of(const TransferArguments& arguments) {
   const fs::path from = arguments.from;
   if (fs::is_regular_file(from)) return from;
@@ -36,8 +36,8 @@ fs::path trajectory_of(const TransferArguments& arguments) {
   return file;
 }
 
-/// One pose a sweep, at the instant that the export's times.txt names.
-std::vector<io::StampedPose> poses_at_mid_sweep(const core::Estimate& estimate) {
+/// One pose of the LiDAR a sweep (its clouds are in its frame), at the instant that the export's times.txt names.
+std::vector<io::StampedPose> poses_at_mid_sweep(const core::Estimate& estimate, const core::Rig& rig) {
   std::vector<io::StampedPose> poses;
   for (const core::SweepResult& sweep : estimate.sweeps) {
     const core::Time middle = sweep.begin + (sweep.end - sweep.begin) / 2;
@@ -46,7 +46,7 @@ std::vector<io::StampedPose> poses_at_mid_sweep(const core::Estimate& estimate) 
           "{}: sweep {} has no pose, and KITTI's poses.txt needs one a sweep; export as tum, or the recording alone",
           estimate.estimator, sweep.index));
     }
-    poses.push_back({middle, estimate.headline().pose(middle)});
+    poses.push_back({middle, estimate.headline().pose(middle) * rig.lidars.at(0).T_body_lidar});
   }
   return poses;
 }
@@ -75,12 +75,17 @@ int export_command(const TransferArguments& arguments, const CommonArguments& co
   }
   const core::Recording recording = core::Recording::open(recording_of(arguments.from));
   if (arguments.format == "plain") {
+    if (!arguments.estimator.empty()) {
+      throw core::InputError("export --format plain: -e has no place in it; use --format tum for a trajectory");
+    }
     io::export_plain(recording, arguments.to, console.progress("export"));
   } else {
+    fs::remove(fs::path(arguments.to) / "poses.txt");  // of an earlier export
     io::export_kitti(recording, arguments.to, console.progress("export"));
     if (!arguments.estimator.empty()) {
       const fs::path file = fs::path(arguments.from) / arguments.estimator / "trajectory.bin";
-      io::write_kitti_poses(fs::path(arguments.to) / "poses.txt", poses_at_mid_sweep(core::load_estimate(file)));
+      io::write_kitti_poses(fs::path(arguments.to) / "poses.txt",
+                            poses_at_mid_sweep(core::load_estimate(file), recording.rig()));
     }
   }
   fmt::print("{}\n", arguments.to);
