@@ -71,9 +71,21 @@ SweepSimulator::SweepSimulator(const Profile& profile, const Mode& mode, const M
       batch_cycles_(std::max<std::size_t>(1, batch_rays / (tile * firing_.channels())) * tile),
       batch_tiles_(firing_.tiles(batch_cycles_)) {}
 
+raycast::SweepTracer SweepSimulator::tracer_for(const SweepSpan& span) const {
+  const Vector3d origin = motion_->pose(span.begin) * mounting_.T_body_lidar.translation();
+  return tracer_->sweep(span.begin, span.end, origin, profile_.max_range_m + 1);
+}
+
 SimulatedSweep SweepSimulator::sweep(std::int64_t index) const {
-  const SweepSpan span = firing_.sweep(index);
+  Workspace workspace;
   SimulatedSweep out;
+  sweep(index, workspace, out);
+  return out;
+}
+
+void SweepSimulator::sweep(std::int64_t index, Workspace& w, SimulatedSweep& out) const {
+  const SweepSpan span = firing_.sweep(index);
+  out = {};
   out.sweep.index = index;
   out.sweep.begin = span.begin;
   out.sweep.end = span.end;
@@ -82,9 +94,7 @@ SimulatedSweep SweepSimulator::sweep(std::int64_t index) const {
   out.sweep.reserve(out.rays);
   out.instance.reserve(out.rays);
 
-  const Vector3d origin = motion_->pose(span.begin) * mounting_.T_body_lidar.translation();
-  const raycast::SweepTracer tracer = tracer_->sweep(span.begin, span.end, origin, profile_.max_range_m + 1);
-  Workspace w;
+  const raycast::SweepTracer tracer = tracer_for(span);
   for (std::int64_t first = 0; first < span.cycles; first += static_cast<std::int64_t>(batch_cycles_)) {
     const std::size_t cycles = std::min(batch_cycles_, static_cast<std::size_t>(span.cycles - first));
     aim(span, first, cycles, tracer.base(), w);
@@ -97,7 +107,21 @@ SimulatedSweep SweepSimulator::sweep(std::int64_t index) const {
     measure(span, first, w);
     report(span, w, out);
   }
-  return out;
+}
+
+AimedSweep SweepSimulator::aimed(std::int64_t index) const {
+  const SweepSpan span = firing_.sweep(index);
+  AimedSweep result{tracer_for(span), {}, {}};
+  Workspace w;
+  aim(span, 0, static_cast<std::size_t>(span.cycles), result.tracer.base(), w);
+  result.rays = std::move(w.rays);
+  for (std::int64_t first = 0; first < span.cycles; first += static_cast<std::int64_t>(batch_cycles_)) {
+    const std::size_t cycles = std::min(batch_cycles_, static_cast<std::size_t>(span.cycles - first));
+    const auto offset = static_cast<std::uint32_t>(static_cast<std::size_t>(first) * firing_.channels());
+    for (const std::uint32_t ray : firing_.tiles(cycles))
+      result.tiles.push_back(ray == raycast::SweepTracer::no_ray ? ray : ray + offset);
+  }
+  return result;
 }
 
 void SweepSimulator::aim(const SweepSpan& span, std::int64_t first, std::size_t cycles, const Vector3d& base,

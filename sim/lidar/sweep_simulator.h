@@ -38,6 +38,21 @@ struct SimulatedSweep {
   double trace_cpu_s = 0;  ///< processor time inside the tracer
 };
 
+/// Arrays that a sweep is made in; keep one a thread and hand it from sweep to sweep.
+struct Workspace {
+  raycast::Rays rays;
+  raycast::Hits hits;
+  Echoes echoes;
+  std::vector<Cycle> cycles;
+};
+
+/// The rays of a whole sweep and the tiles they are traced in.
+struct AimedSweep {
+  raycast::SweepTracer tracer;
+  raycast::Rays rays;
+  std::vector<std::uint32_t> tiles;
+};
+
 /// Simulates sweeps in any order, on any number of threads at once: each is a function of its index alone.
 ///
 /// A beam leaves from the exact pose of the body at its cycle's time; where channels fire one after the other, the
@@ -52,14 +67,13 @@ class SweepSimulator {
   const FiringTable& firing() const { return firing_; }
   /// Throws OutOfSpan when the motion does not cover the sweep.
   SimulatedSweep sweep(std::int64_t index) const;
+  /// The same into arrays that exist already; what `out` held is gone.
+  void sweep(std::int64_t index, Workspace& workspace, SimulatedSweep& out) const;
+  /// A sweep's rays without tracing them.
+  AimedSweep aimed(std::int64_t index) const;
 
  private:
-  struct Workspace {
-    raycast::Rays rays;
-    raycast::Hits hits;
-    Echoes echoes;
-    std::vector<Cycle> cycles;
-  };
+  raycast::SweepTracer tracer_for(const SweepSpan& span) const;
   void aim(const SweepSpan& span, std::int64_t first, std::size_t cycles, const Eigen::Vector3d& base,
            Workspace& w) const;
   void measure(const SweepSpan& span, std::int64_t first, Workspace& w) const;

@@ -237,6 +237,67 @@ void SweepTracer::trace(const Rays& rays, std::span<const std::uint32_t> order, 
   }
 }
 
+struct PackedTiles::State {
+  struct Tile {
+    RTCRayHit16 packet;
+    alignas(64) int valid[SweepTracer::tile];
+  };
+  RTCScene static_scene = nullptr, moving_scene = nullptr;
+  float reach_m = 0;
+  std::vector<Tile> tiles;
+  std::size_t rays = 0;
+};
+
+PackedTiles::PackedTiles() : state_(std::make_unique<State>()) {}
+PackedTiles::PackedTiles(PackedTiles&&) noexcept = default;
+PackedTiles& PackedTiles::operator=(PackedTiles&&) noexcept = default;
+PackedTiles::~PackedTiles() = default;
+
+std::size_t PackedTiles::rays() const {
+  return state_->rays;
+}
+
+void PackedTiles::reset() {
+  for (State::Tile& t : state_->tiles)
+    for (std::size_t lane = 0; lane < SweepTracer::tile; ++lane) {
+      t.packet.ray.tfar[lane] = state_->reach_m;
+      t.packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+      t.packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
+void PackedTiles::intersect() {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  for (State::Tile& t : state_->tiles) {
+    rtcIntersect16(t.valid, state_->static_scene, &context, &t.packet);
+    if (state_->moving_scene) rtcIntersect16(t.valid, state_->moving_scene, &context, &t.packet);
+  }
+}
+
+std::size_t PackedTiles::hits() const {
+  std::size_t count = 0;
+  for (const State::Tile& t : state_->tiles)
+    for (std::size_t lane = 0; lane < SweepTracer::tile; ++lane)
+      count += t.valid[lane] != 0 && t.packet.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+  return count;
+}
+
+PackedTiles SweepTracer::pack(const Rays& rays, std::span<const std::uint32_t> order) const {
+  PackedTiles packed;
+  PackedTiles::State& p = *packed.state_;
+  p.static_scene = state_->static_scene;
+  p.moving_scene = state_->moving_scene.get();
+  p.reach_m = state_->reach_m;
+  p.tiles.resize(order.size() / tile);
+  for (std::size_t k = 0; k < p.tiles.size(); ++k) {
+    state_->load(rays, order.subspan(k * tile, tile), p.tiles[k].packet, p.tiles[k].valid);
+    for (const int valid : p.tiles[k].valid) p.rays += valid != 0;
+  }
+  return packed;
+}
+
 void SweepTracer::State::load(const Rays& rays, std::span<const std::uint32_t> lanes, RTCRayHit16& packet,
                               int* valid) const {
   const float per_ns = static_cast<float>(1 / span_ns);
