@@ -78,7 +78,7 @@ class SweepTracer {
   /// Where rays' origins count from [m, world].
   const Eigen::Vector3d& base() const;
   /// Traces rays tile by tile: `order` holds tiles of 16 indices into `rays`, neighbours in direction together (that is
-  /// what makes packets fast); `no_ray` fills up a tile. Rays that `order` leaves out keep the hit they had.
+  /// what makes packets fast); `no_ray` fills up a tile. Rays that `order` leaves out meet nothing.
   void trace(const Rays& rays, std::span<const std::uint32_t> order, Hits& hits) const;
   /// The rays of trace(), packed.
   PackedTiles pack(const Rays& rays, std::span<const std::uint32_t> order) const;
