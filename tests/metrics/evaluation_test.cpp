@@ -51,6 +51,26 @@ Estimate bent(const Drive& drive) {
                       {.C_right = pose({0.3, 0.1, 0}, {0, 0, 0.02}), .yaw_rate_error_rad_s = 0.03});
 }
 
+/// East at 8 m/s, with a deceleration from some instant on.
+class Braking final : public SmoothTrajectory {
+ public:
+  Braking(Time from, double deceleration_m_s2) : from_(from), deceleration_m_s2_(deceleration_m_s2) {}
+  Time begin() const override { return Time{}; }
+  Time end() const override { return time_from_s(10); }
+  Kinematics at(Time t) const override {
+    const double s = to_s(t - Time{}), braked_s = std::max(0.0, to_s(t - from_));
+    Kinematics k;
+    k.T_world_body.translation().x() = 8 * s - 0.5 * deceleration_m_s2_ * braked_s * braked_s;
+    k.v_world.x() = 8 - deceleration_m_s2_ * braked_s;
+    k.a_world.x() = braked_s > 0 ? -deceleration_m_s2_ : 0;
+    return k;
+  }
+
+ private:
+  Time from_;
+  double deceleration_m_s2_;
+};
+
 /// Equal to the last bit, NaN included.
 bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
@@ -165,8 +185,9 @@ TEST_F(EvaluationTest, CostComesFromTheRunsRecords) {
   const Drive drive = wobbly_drive();
   const RunTiming timing = some_timing();
   const std::vector<SweepDiagnostics> diagnostics = some_diagnostics();
+  const DiagnosticsSource source = diagnostics_of(diagnostics);
   const Estimate estimate = bent(drive);
-  const Evaluation e = evaluate({estimate, drive.source(), drive.truth, drive.labels, &timing, &diagnostics}, {});
+  const Evaluation e = evaluate({estimate, drive.source(), &drive.truth, &drive.labels, &timing, &source}, {});
   EXPECT_DOUBLE_EQ(*e.row("sweep_time_p50_ms")->value, 17);
   EXPECT_DOUBLE_EQ(*e.row("sweep_time_p95_ms")->value, 10 + 14 * 0.95);
   EXPECT_DOUBLE_EQ(*e.row("sweep_cpu_p50_ms")->value, 27);
@@ -211,13 +232,68 @@ TEST_F(EvaluationTest, TheMapSampleIsEvenAndHoldsEachPointsOwnError) {
   EXPECT_EQ(few.map.p_world_m.size(), 36u);  // one of every 8 points
 }
 
+/// An estimate that stretches the path bends every sweep; brakes count from the sweep whose middle they reach.
+TEST_F(EvaluationTest, DeskewErrorUnderBrakingIsThatOfTheSweepsThatBrake) {
+  const DriveShape shape{.sweeps = 20};
+  const auto row_of = [&](const std::shared_ptr<const SmoothTrajectory>& motion) {
+    const Drive drive = make_drive(motion, shape, [&](int k) {
+      return box(motion->pose(shape.end(k)).translation() + Eigen::Vector3d(4, 2, 1), {20, 9, 3});
+    });
+    const Estimate estimate = make_control(drive.truth, drive.source(), {.speed_scale = 1.05});
+    const Evaluation e = drive.evaluate(estimate);
+    return std::pair(*e.row("deskew_error_braking_rms_m"), *e.row("deskew_error_rms_m")->value);
+  };
+  const auto always = std::make_shared<Braking>(Time{} - Duration(1), 3);
+  const auto [all, whole] = row_of(always);
+  ASSERT_TRUE(all.value);
+  EXPECT_EQ(all.status, "ok: 20 sweeps");
+  EXPECT_DOUBLE_EQ(*all.value, whole);
+
+  const Time late = shape.begin(15) + (shape.end(15) - shape.begin(15)) / 2 - Duration(1'000'000);
+  const auto some = std::make_shared<Braking>(late, 3);
+  const auto [part, mixed] = row_of(some);
+  ASSERT_TRUE(part.value);
+  EXPECT_EQ(part.status, "ok: 5 sweeps");
+  EXPECT_LT(*part.value, mixed);  // a stretched path bends a sweep less the slower it goes
+
+  const auto gentle = std::make_shared<Braking>(Time{}, 2);
+  EXPECT_FALSE(row_of(gentle).first.value);
+}
+
+TEST_F(EvaluationTest, WithoutTruthSaysWhatTheRunItselfTellsAndNothingElse) {
+  const Drive drive = wobbly_drive();
+  const RunTiming timing = some_timing();
+  const std::vector<SweepDiagnostics> diagnostics = some_diagnostics();
+  const DiagnosticsSource source = diagnostics_of(diagnostics);
+  Estimate estimate = bent(drive);
+  estimate.sweeps[4].status = SweepStatus::lost;
+  const Evaluation e = evaluate({estimate, drive.source(), nullptr, nullptr, &timing, &source}, {});
+  EXPECT_EQ(e.status, "ok");
+  EXPECT_DOUBLE_EQ(*e.row("coverage_percent")->value, 100 * 14.0 / 15);
+  EXPECT_DOUBLE_EQ(*e.row("sweep_time_p50_ms")->value, 17);
+  EXPECT_DOUBLE_EQ(*e.row("iterations_mean")->value, 7.5);
+  for (const char* needs_truth : {"ate_se3_rmse_m", "rpe_1sweep_trans_rmse_m", "end_error_percent", "path_length_m",
+                                  "deskew_error_rms_m", "point_error_rms_m", "point_coverage_percent"}) {
+    ASSERT_NE(e.row(needs_truth), nullptr) << needs_truth;
+    EXPECT_FALSE(e.row(needs_truth)->value) << needs_truth;
+    EXPECT_EQ(e.row(needs_truth)->status, "n/a: the recording has no truth");
+  }
+  const Series* path = e.find("path_estimate");
+  ASSERT_NE(path, nullptr);
+  EXPECT_EQ(path->x.size(), 14U);
+  EXPECT_EQ(path->x.front(), estimate.sweeps.front().T_map_body.translation().x());
+  EXPECT_EQ(e.find("path_true"), nullptr);
+  EXPECT_TRUE(e.map.p_world_m.empty());
+}
+
 TEST_F(EvaluationTest, ComesBackFromItsFilesExactly) {
   const Drive drive = wobbly_drive();
   const RunTiming timing = some_timing();
   const std::vector<SweepDiagnostics> diagnostics = some_diagnostics();
+  const DiagnosticsSource source = diagnostics_of(diagnostics);
   Estimate estimate = bent(drive);
   estimate.sweeps[4].status = SweepStatus::lost;  // a NaN in path_estimate
-  Evaluation e = evaluate({estimate, drive.source(), drive.truth, drive.labels, &timing, &diagnostics}, {});
+  Evaluation e = evaluate({estimate, drive.source(), &drive.truth, &drive.labels, &timing, &source}, {});
   e.seed = 18446744073709551615u;
   e.status = "crashed";
   e.message = "last words: \"\n\t\u00e9";
@@ -238,10 +314,10 @@ TEST_F(EvaluationTest, TimesLieInAFileOfTheirOwn) {
   const Drive drive = wobbly_drive();
   const Estimate estimate = bent(drive);
   RunTiming timing = some_timing();
-  save_evaluation(folder_ / "a", evaluate({estimate, drive.source(), drive.truth, drive.labels, &timing}, {}));
+  save_evaluation(folder_ / "a", evaluate({estimate, drive.source(), &drive.truth, &drive.labels, &timing}, {}));
   for (SweepTiming& sweep : timing.sweeps) sweep.wall_ms *= 1.1;
   timing.peak_memory_mb = 7;
-  save_evaluation(folder_ / "b", evaluate({estimate, drive.source(), drive.truth, drive.labels, &timing}, {}));
+  save_evaluation(folder_ / "b", evaluate({estimate, drive.source(), &drive.truth, &drive.labels, &timing}, {}));
   EXPECT_EQ(read_file(folder_ / "a/evaluation.json"), read_file(folder_ / "b/evaluation.json"));
   EXPECT_NE(read_file(folder_ / "a/cost.json"), read_file(folder_ / "b/cost.json"));
 }
@@ -291,7 +367,7 @@ TEST_F(EvaluationTest, FromDiskEqualsFromMemory) {
   drive.truth.folder = folder_ / "truth";
   drive.nominal = recording.rig();  // a rotation's last digit may change on its way through the data sheet
   const Estimate estimate = bent(drive);
-  expect_same(drive.evaluate(estimate), evaluate(estimate, recording, drive.truth, nullptr, {}));
+  expect_same(drive.evaluate(estimate), evaluate(estimate, recording, &drive.truth, nullptr, {}));
   EXPECT_EQ(make_control(drive.truth, recording).sweeps.size(), 15u);
 }
 
