@@ -13,8 +13,8 @@ using core::Duration;
 using core::Kinematics;
 using core::Time;
 
-constexpr int first_pieces = 4;            // of a sweep: 25 ms at 10 Hz
-constexpr Duration shortest{1'000'000};    // a piece; nothing that carries a sensor needs shorter ones
+constexpr int first_pieces = 4;          // of a sweep: 25 ms at 10 Hz
+constexpr Duration shortest{1'000'000};  // a piece; nothing that carries a sensor needs shorter ones
 
 BodyState exact_state(const core::SmoothTrajectory& motion, Time t) {
   const Kinematics k = motion.at(t);

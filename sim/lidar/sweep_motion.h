@@ -40,7 +40,7 @@ class SweepMotion {
     core::Time begin, end;
     bool exact = false;  // ask the motion
     Eigen::Matrix3d R_world_middle;
-    std::array<double, nodes> s;      // times of the nodes from the piece's begin [s]
+    std::array<double, nodes> s;       // times of the nodes from the piece's begin [s]
     std::array<Values, nodes> newton;  // divided differences
   };
   Piece fit(core::Time begin, core::Time end) const;

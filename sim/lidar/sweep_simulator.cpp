@@ -93,9 +93,8 @@ TARMAC_VECTOR_LOOP void raw_ranges(std::size_t count, const double* __restrict t
 
 /// p = origin + (range - offset) direction, by the nominal table: what the sensor's driver computes from a raw range.
 TARMAC_VECTOR_LOOP void place_cycle(std::size_t channels, const Beams b, double cos_azimuth, double sin_azimuth,
-                                    const double* __restrict origin, double offset_m,
-                                    const double* __restrict range_m, float* __restrict x_m, float* __restrict y_m,
-                                    float* __restrict z_m) {
+                                    const double* __restrict origin, double offset_m, const double* __restrict range_m,
+                                    float* __restrict x_m, float* __restrict y_m, float* __restrict z_m) {
   const double ox = origin[0], oy = origin[1], oz = origin[2];
   for (std::size_t c = 0; c < channels; ++c) {
     const double r = range_m[c] - offset_m, x = b.x[c], y = b.y[c];
@@ -253,8 +252,7 @@ void SweepSimulator::report(Workspace& w, SimulatedSweep& out) const {
   const std::size_t channels = firing_.channels(), firings = w.echoes.size();
   const Beams beams{beam_x_.data(), beam_y_.data(), beam_z_.data(), offset_s_.data()};
   const Echoes& e = w.echoes;
-  for (auto* v : {&w.x_m, &w.y_m, &w.z_m, &w.kept.x_m, &w.kept.y_m, &w.kept.z_m, &w.kept.intensity})
-    v->resize(firings);
+  for (auto* v : {&w.x_m, &w.y_m, &w.z_m, &w.kept.x_m, &w.kept.y_m, &w.kept.z_m, &w.kept.intensity}) v->resize(firings);
   w.kept.t_ns.resize(firings);
   w.kept.ring.resize(firings);
   w.kept_instance.resize(firings);

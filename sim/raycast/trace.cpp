@@ -35,8 +35,6 @@ RayArrays arrays_of(const Rays& rays) {
 struct HitArrays {
   double* t_m;
   float *nx, *ny, *nz, *cos_incidence, *nd;
-  std::uint16_t* material;
-  std::uint32_t* surface;
 };
 
 TARMAC_VECTOR_LOOP void load_rays(const std::uint32_t* lanes, const RayArrays rays, RTCRay16& ray) {
@@ -52,17 +50,15 @@ TARMAC_VECTOR_LOOP void load_rays(const std::uint32_t* lanes, const RayArrays ra
   }
 }
 
-/// Where each ray meets the plane of its triangle. `planes` holds x, y, z of the normal and the offset n'x, in the
-/// world; base is where the rays' origins count from.
+/// Where each ray meets its plane. `planes` holds x, y, z of the normals and the offsets n'x, in the world; base is
+/// where the rays' origins count from.
 TARMAC_VECTOR_LOOP void meet_planes(std::size_t count, const RayArrays rays, const double* __restrict base,
-                                    const double* __restrict planes, const std::uint32_t* __restrict surfaces,
-                                    const std::uint32_t* __restrict triangle, const float* __restrict t_embree_m,
+                                    const double* __restrict planes, const float* __restrict t_embree_m,
                                     const HitArrays hits) {
   const double bx = base[0], by = base[1], bz = base[2];
 #pragma GCC ivdep
   for (std::size_t k = 0; k < count; ++k) {
-    const int at = 4 * static_cast<int>(triangle[k]);
-    const double nx = planes[at], ny = planes[at + 1], nz = planes[at + 2], offset = planes[at + 3];
+    const double nx = planes[4 * k], ny = planes[4 * k + 1], nz = planes[4 * k + 2], offset = planes[4 * k + 3];
     const double nd = nx * rays.dx[k] + ny * rays.dy[k] + nz * rays.dz[k];
     const double from_plane = offset - (nx * (bx + rays.ox[k]) + ny * (by + rays.oy[k]) + nz * (bz + rays.oz[k]));
     // The comparison is false as well when the plane holds the ray, or when there is none (not a number).
@@ -76,12 +72,6 @@ TARMAC_VECTOR_LOOP void meet_planes(std::size_t count, const RayArrays rays, con
     hits.nx[k] = turn * static_cast<float>(nx);
     hits.ny[k] = turn * static_cast<float>(ny);
     hits.nz[k] = turn * static_cast<float>(nz);
-  }
-#pragma GCC ivdep
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::uint32_t surface = surfaces[triangle[k]];
-    hits.surface[k] = surface;
-    hits.material[k] = static_cast<std::uint16_t>(surface);
   }
 }
 
@@ -102,6 +92,7 @@ void Hits::resize(std::size_t n) {
 void TraceScratch::resize(std::size_t rays) {
   triangle.assign(rays, 0);
   t_embree_m.assign(rays, std::numeric_limits<float>::infinity());
+  planes.resize(rays);
   nd.resize(rays);
   surface.resize(rays);
   moving.clear();
@@ -232,11 +223,16 @@ void SweepTracer::State::keep(std::span<const std::uint32_t> lanes, const RTCRay
 
 void SweepTracer::State::finish_static(const Rays& rays, Hits& hits) {
   const StaticTriangles& still = tracer->still;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t triangle = scratch.triangle[i], surface = still.surface[triangle];
+    scratch.planes[i] = still.planes[triangle];
+    scratch.surface[i] = surface;
+    hits.material[i] = static_cast<std::uint16_t>(surface);
+  }
   static_assert(sizeof(TrianglePlane) == 4 * sizeof(double));
-  meet_planes(rays.size(), arrays_of(rays), base.data(), still.planes.front().normal.data(), still.surface.data(),
-              scratch.triangle.data(), scratch.t_embree_m.data(),
-              {hits.t_m.data(), hits.nx.data(), hits.ny.data(), hits.nz.data(), hits.cos_incidence.data(),
-               scratch.nd.data(), hits.material.data(), scratch.surface.data()});
+  meet_planes(
+      rays.size(), arrays_of(rays), base.data(), scratch.planes.front().normal.data(), scratch.t_embree_m.data(),
+      {hits.t_m.data(), hits.nx.data(), hits.ny.data(), hits.nz.data(), hits.cos_incidence.data(), scratch.nd.data()});
   if (!tracer->scene->relief) return;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if ((scratch.surface[i] & StaticTriangles::relief_bit) == 0 || !ReliefBatch::applies(scratch.nd[i])) continue;
