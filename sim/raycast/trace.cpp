@@ -17,6 +17,11 @@ constexpr std::size_t tile = SweepTracer::tile;
 // recomputed distance that is farther off than this belongs to a triangle seen edge-on, and Embree's is kept.
 constexpr double max_correction_m = 0.05;
 
+struct PackedTile {
+  RTCRayHit16 packet;
+  alignas(64) int valid[tile];
+};
+
 RTCIntersectContext coherent_context() {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -107,29 +112,30 @@ void SweepTracer::trace(const Rays& rays, std::span<const std::uint32_t> order, 
   std::fill(hits.instance.begin(), hits.instance.end(), Hits::nothing);
   s.scratch.resize(rays.size());
   RTCIntersectContext context = coherent_context();
-  RTCRayHit16 packet;
-  alignas(64) int valid[tile];
-  s.set_up(packet);
-  for (std::size_t first = 0; first + tile <= order.size(); first += tile) {
-    const std::span<const std::uint32_t> lanes = order.subspan(first, tile);
-    s.load(rays, lanes, packet, valid);
-    rtcIntersect16(valid, s.static_scene, &context, &packet);
-    // tfar now stands at the static hit: an actor replaces it only where it is nearer.
-    if (s.moving_scene) rtcIntersect16(valid, s.moving_scene.get(), &context, &packet);
-    s.keep(lanes, packet, hits);
+  // A few tiles at a time: packed, traced, kept. One by one, Embree would wait for the packing's stores to land.
+  constexpr std::size_t group = 8;
+  PackedTile tiles[group];
+  for (PackedTile& t : tiles) s.set_up(t.packet);
+  const std::size_t count = order.size() / tile;
+  for (std::size_t first = 0; first < count; first += group) {
+    const std::size_t here = std::min(group, count - first);
+    for (std::size_t k = 0; k < here; ++k)
+      s.load(rays, order.subspan((first + k) * tile, tile), tiles[k].packet, tiles[k].valid);
+    for (std::size_t k = 0; k < here; ++k) {
+      rtcIntersect16(tiles[k].valid, s.static_scene, &context, &tiles[k].packet);
+      // tfar now stands at the static hit: an actor replaces it only where it is nearer.
+      if (s.moving_scene) rtcIntersect16(tiles[k].valid, s.moving_scene.get(), &context, &tiles[k].packet);
+    }
+    for (std::size_t k = 0; k < here; ++k) s.keep(order.subspan((first + k) * tile, tile), tiles[k].packet, hits);
   }
   s.finish_static(rays, hits);
   s.finish_moving(rays, hits);
 }
 
 struct PackedTiles::State {
-  struct Tile {
-    RTCRayHit16 packet;
-    alignas(64) int valid[SweepTracer::tile];
-  };
   RTCScene static_scene = nullptr, moving_scene = nullptr;
   float reach_m = 0;
-  std::vector<Tile> tiles;
+  std::vector<PackedTile> tiles;
   std::size_t rays = 0;
 };
 
@@ -143,7 +149,7 @@ std::size_t PackedTiles::rays() const {
 }
 
 void PackedTiles::reset() {
-  for (State::Tile& t : state_->tiles)
+  for (PackedTile& t : state_->tiles)
     for (std::size_t lane = 0; lane < SweepTracer::tile; ++lane) {
       t.packet.ray.tfar[lane] = state_->reach_m;
       t.packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
@@ -153,7 +159,7 @@ void PackedTiles::reset() {
 
 void PackedTiles::intersect() {
   RTCIntersectContext context = coherent_context();
-  for (State::Tile& t : state_->tiles) {
+  for (PackedTile& t : state_->tiles) {
     rtcIntersect16(t.valid, state_->static_scene, &context, &t.packet);
     if (state_->moving_scene) rtcIntersect16(t.valid, state_->moving_scene, &context, &t.packet);
   }
@@ -161,7 +167,7 @@ void PackedTiles::intersect() {
 
 std::size_t PackedTiles::hits() const {
   std::size_t count = 0;
-  for (const State::Tile& t : state_->tiles)
+  for (const PackedTile& t : state_->tiles)
     for (std::size_t lane = 0; lane < SweepTracer::tile; ++lane)
       count += t.valid[lane] != 0 && t.packet.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
   return count;
@@ -212,8 +218,12 @@ void SweepTracer::State::keep(std::span<const std::uint32_t> lanes, const RTCRay
     if (i == no_ray || id == RTC_INVALID_GEOMETRY_ID) continue;
     const std::uint32_t carried = packet.hit.instID[0][lane];
     if (carried == RTC_INVALID_GEOMETRY_ID) {
+      const std::uint32_t row = tracer->still.first[id] + triangle;
+      // Wanted when all tiles are traced; fetched while Embree works on the next.
+      __builtin_prefetch(&tracer->still.planes[row]);
+      __builtin_prefetch(&tracer->still.surface[row]);
       hits.instance[i] = id;
-      scratch.triangle[i] = tracer->still.first[id] + triangle;
+      scratch.triangle[i] = row;
       scratch.t_embree_m[i] = packet.ray.tfar[lane];
     } else {
       scratch.moving.push_back({i, carried, triangle, packet.ray.tfar[lane]});
