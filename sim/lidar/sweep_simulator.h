@@ -59,7 +59,7 @@ struct AimedSweep {
 
 /// Simulates sweeps in any order, on any number of threads at once: each is a function of its index alone.
 ///
-/// A beam leaves from the pose of the body at its cycle's time (SweepMotion: exact to 0.1 micrometres); where channels
+/// A beam leaves from the pose of the body at its cycle's time (SweepMotion: within a micrometre of it); where channels
 /// fire one after the other, the body's velocity and rate carry the pose over the rest of the cycle (first order; over
 /// 35 microseconds the neglected second order is below a micrometre at 100 m), while the spin of the head is in the
 /// beam table exactly.
