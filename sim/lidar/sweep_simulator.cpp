@@ -56,8 +56,16 @@ SweepSimulator::SweepSimulator(const Profile& profile, const Mode& mode, const M
                                std::shared_ptr<const raycast::Tracer> tracer,
                                std::shared_ptr<const scenes::Scene> scene,
                                std::shared_ptr<const core::SmoothTrajectory> motion)
+    : SweepSimulator(profile, FiringTable(profile, mode), mounting, noise, seed, std::move(tracer), std::move(scene),
+                     std::move(motion)) {}
+
+SweepSimulator::SweepSimulator(const Profile& profile, FiringTable firing, const Mounting& mounting,
+                               const NoiseOptions& noise, std::uint64_t seed,
+                               std::shared_ptr<const raycast::Tracer> tracer,
+                               std::shared_ptr<const scenes::Scene> scene,
+                               std::shared_ptr<const core::SmoothTrajectory> motion)
     : profile_(profile),
-      firing_(profile, mode),
+      firing_(std::move(firing)),
       mounting_(mounting),
       options_(noise),
       tracer_(std::move(tracer)),
@@ -114,8 +122,12 @@ void SweepSimulator::aim(const SweepSpan& span, std::int64_t first, std::size_t 
     const auto cycle_ns = static_cast<std::int32_t>((cycle.t - span.begin).count());
     for (std::size_t c = 0; c < channels; ++c, ++i) {
       Vector3d d = firing_.direction(cycle, c), o = origin;
+      const double dt = 1e-9 * firing_.offset_ns(c);
+      if (firing_.channel_origins()) {
+        const Vector3d offset = firing_.origin_offset(cycle, c);
+        o += sensor.R * (offset + dt * sensor.w_sensor.cross(offset));
+      }
       if (firing_.staggered()) {
-        const double dt = 1e-9 * firing_.offset_ns(c);
         d += dt * sensor.w_sensor.cross(d);
         o += dt * origin_rate;
       }
@@ -155,10 +167,13 @@ void SweepSimulator::report(const SweepSpan&, const Workspace& w, SimulatedSweep
   const std::size_t channels = firing_.channels();
   const Echoes& e = w.echoes;
   for (std::size_t k = 0, i = 0; k < w.cycles.size(); ++k) {
-    const Vector3d origin = firing_.origin(w.cycles[k]);
+    const Cycle cycle = w.cycles[k].reported();
+    const Vector3d shared_origin = firing_.origin(cycle);
     for (std::size_t c = 0; c < channels; ++c, ++i) {
       if (!(e.range_m[i] >= profile_.min_range_m && e.range_m[i] <= profile_.max_range_m)) continue;
-      const Vector3d p = origin + (e.range_m[i] - firing_.range_offset_m()) * firing_.direction(w.cycles[k], c);
+      Vector3d origin = shared_origin;
+      if (firing_.channel_origins()) origin += firing_.origin_offset(cycle, c);
+      const Vector3d p = origin + (e.range_m[i] - firing_.range_offset_m()) * firing_.direction(cycle, c);
       out.sweep.push_back(p.cast<float>(), w.rays.t_ns[i], static_cast<std::uint16_t>(profile_.ring[c]),
                           e.intensity[i]);
       out.instance.push_back(w.hits.instance[i]);

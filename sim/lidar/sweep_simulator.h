@@ -48,6 +48,10 @@ class SweepSimulator {
   SweepSimulator(const Profile& profile, const Mode& mode, const Mounting& mounting, const NoiseOptions& noise,
                  std::uint64_t seed, std::shared_ptr<const raycast::Tracer> tracer,
                  std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion);
+  /// The same with a head that turns unevenly or fires at recorded times.
+  SweepSimulator(const Profile& profile, FiringTable firing, const Mounting& mounting, const NoiseOptions& noise,
+                 std::uint64_t seed, std::shared_ptr<const raycast::Tracer> tracer,
+                 std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion);
 
   const FiringTable& firing() const { return firing_; }
   /// Throws OutOfSpan when the motion does not cover the sweep.
