@@ -20,9 +20,9 @@ struct SimulationInput {
   core::Duration duration{0};
   std::shared_ptr<const scenes::Scene> scene;
   std::shared_ptr<const core::SmoothTrajectory> motion;
-  core::ConfigNode rig;           ///< the scenario's `rig:` block: {lidar: {...}, imu: {...}, gravity_m_s2}
-  std::string resolved_scenario;  ///< stored as truth/scenario.yaml
-  std::string resolved_motion;    ///< of sim::truth::resolve_motion; stored as truth/motion.yaml
+  core::ConfigNode rig;               ///< the scenario's `rig:` block: {lidar: {...}, imu: {...}, gravity_m_s2}
+  std::string resolved_scenario;      ///< stored as truth/scenario.yaml
+  std::string resolved_motion;        ///< of sim::truth::resolve_motion; stored as truth/motion.yaml
 };
 
 struct SimulationSettings {
