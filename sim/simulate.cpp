@@ -64,10 +64,7 @@ std::size_t write_imu(const RigOptions& options, const SimulationInput& input, R
 }  // namespace
 
 void check(const SimulationInput& input) {
-  const RigOptions options = read_rig(input.rig);
-  sweeps_within(
-      lidar::FiringTable(lidar::profile(options.lidar.model), {options.lidar.columns, options.lidar.sweep_rate_hz}),
-      input);
+  sweeps_within(firing_table(read_rig(input.rig), input.seed), input);
 }
 
 SimulationSummary simulate(const SimulationInput& input, const SimulationSettings& settings,
@@ -76,12 +73,11 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   const Stopwatch watch;
   const int threads = std::clamp(settings.threads, 1, tbb::info::default_concurrency());
   const RigOptions options = read_rig(input.rig);
-  const lidar::Profile& profile = lidar::profile(options.lidar.model);
   const Rig rig = data_sheet(options);
 
   const auto tracer =
       std::make_shared<const raycast::Tracer>(input.scene, raycast::TracerSettings{threads, settings.fast});
-  const lidar::SweepSimulator simulator(profile, {options.lidar.columns, options.lidar.sweep_rate_hz},
+  const lidar::SweepSimulator simulator(options.lidar.profile, firing_table(options, input.seed),
                                         {.sensor = 0, .T_body_lidar = options.lidar.T_body_lidar}, options.lidar.noise,
                                         input.seed, tracer, input.scene, input.motion);
   const std::int64_t count = sweeps_within(simulator.firing(), input);

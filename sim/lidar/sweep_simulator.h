@@ -68,6 +68,10 @@ class SweepSimulator {
   SweepSimulator(const Profile& profile, const Mode& mode, const Mounting& mounting, const NoiseOptions& noise,
                  std::uint64_t seed, std::shared_ptr<const raycast::Tracer> tracer,
                  std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion);
+  /// The same with a head that turns unevenly or fires at recorded times.
+  SweepSimulator(const Profile& profile, FiringTable firing, const Mounting& mounting, const NoiseOptions& noise,
+                 std::uint64_t seed, std::shared_ptr<const raycast::Tracer> tracer,
+                 std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion);
 
   const FiringTable& firing() const { return firing_; }
   /// Throws OutOfSpan when the motion does not cover the sweep.
@@ -99,6 +103,7 @@ class SweepSimulator {
   Intensity intensity_;
   // Of each channel: the beam at azimuth 0 (unit vector, sensor frame), seconds into the cycle, ring.
   std::vector<double> beam_x_, beam_y_, beam_z_, offset_s_;
+  std::vector<Eigen::Vector3d> origin_offset_;  // of the beam from the cycle's origin, at azimuth 0 [m]
   std::vector<std::uint16_t> ring_;
   std::size_t batch_cycles_;
   std::vector<std::uint32_t> batch_tiles_;
