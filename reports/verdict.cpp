@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <optional>
 
 #include "reports/page.h"
 
@@ -96,6 +99,60 @@ std::string how_sure(const Score& best, const Score& second) {
       second.estimator, percent(second.low), percent(second.high));
 }
 
+/// Paths but none of them true: a recording from outside.
+bool without_truth(const std::vector<ReportRun>& runs) {
+  bool estimated = false;
+  for (const auto& run : runs) {
+    for (const auto& evaluation : run.evaluations) {
+      if (evaluation.find("path_true")) return false;
+      estimated = estimated || evaluation.find("path_estimate");
+    }
+  }
+  return estimated;
+}
+
+struct PathEnd {
+  std::string estimator;
+  Eigen::Vector2d end_m;  ///< from where the path began, in the method's own frame
+  double length_m = 0;
+};
+
+std::optional<PathEnd> path_end(const metrics::Evaluation& evaluation) {
+  const metrics::Series* const path = evaluation.find("path_estimate");
+  if (!path || evaluation.status != "ok") return std::nullopt;
+  std::vector<Eigen::Vector2d> places;
+  for (std::size_t i = 0; i < path->x.size(); ++i) {
+    if (std::isfinite(path->x[i]) && std::isfinite(path->y[i])) places.emplace_back(path->x[i], path->y[i]);
+  }
+  if (places.empty()) return std::nullopt;
+  PathEnd end{evaluation.estimator, places.back() - places.front(), 0};
+  for (std::size_t i = 1; i < places.size(); ++i) end.length_m += (places[i] - places[i - 1]).norm();
+  return end;
+}
+
+std::string length(double metres) {
+  return metres < 1 ? fmt::format("{:.{}f} cm", 100 * metres, metres < 0.1 ? 1 : 0) : fmt::format("{:.1f} m", metres);
+}
+
+/// How far the methods are from each other: all that can be said where nobody knows the truth.
+std::string agreement(const ReportRun& run) {
+  std::vector<PathEnd> ends;
+  for (const auto& evaluation : run.evaluations) {
+    if (const auto end = path_end(evaluation)) ends.push_back(*end);
+  }
+  if (ends.empty()) return "";
+  if (ends.size() == 1) return fmt::format("{} covers {}.", ends[0].estimator, length(ends[0].length_m));
+  const PathEnd *a = &ends[0], *b = &ends[1];
+  for (const PathEnd& one : ends) {
+    for (const PathEnd& other : ends) {
+      if ((one.end_m - other.end_m).norm() > (a->end_m - b->end_m).norm()) a = &one, b = &other;
+    }
+  }
+  return fmt::format("{}{} and {} end {} apart, after paths of {} and {}; that they agree would not make them right.",
+                     ends.size() > 2 ? "Farthest from each other, " : "", a->estimator, b->estimator,
+                     length((a->end_m - b->end_m).norm()), length(a->length_m), length(b->length_m));
+}
+
 std::string join(const std::string& a, const std::string& b) {
   return a.empty() || b.empty() ? a + b : a + " " + b;
 }
@@ -105,6 +162,10 @@ std::string join(const std::string& a, const std::string& b) {
 Verdict verdict(const std::vector<ReportRun>& runs) {
   const std::vector<Score> list = scores(runs);
   const std::string failed = failures(runs);
+  if (list.empty() && without_truth(runs)) {
+    return {"Nobody knows the true motion of this recording, so no error is stated. " + agreement(runs.front()),
+            failed};
+  }
   if (list.empty()) return {"No estimator has an end error to compare.", failed};
   const Score& best = list.front();
   if (list.size() == 1) {

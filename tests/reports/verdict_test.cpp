@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "reports/page.h"
 #include "tests/reports/example.h"
 
@@ -64,6 +66,26 @@ TEST(Verdict, NeverDividesByAPerfectEnd) {
   const Verdict v = verdict(runs({{"truth-replay", {0.0}}, {"b", {0.4}}}));
   EXPECT_THAT(v.sentence, HasSubstr("b follows with 0.40 %"));
   EXPECT_THAT(v.sentence, Not(HasSubstr("inf")));
+}
+
+metrics::Evaluation alone(const std::string& estimator, double end_x_m) {
+  metrics::Evaluation evaluation;
+  evaluation.estimator = estimator;
+  evaluation.series.push_back({"path_estimate", "x [m]", "y [m]", {5, NAN, 6, 5 + end_x_m}, {0, NAN, 0, 0}, {}, {}});
+  return evaluation;
+}
+
+TEST(Verdict, WithoutTruthSpeaksOfAgreementOnly) {
+  std::vector<ReportRun> list(1);
+  list[0].evaluations = {alone("a", 2), alone("b", 2.5), alone("c", 2.04)};
+  const Verdict v = verdict(list);
+  EXPECT_THAT(v.sentence, StartsWith("Nobody knows the true motion"));
+  EXPECT_THAT(v.sentence, HasSubstr("a and b end 50 cm apart, after paths of 2.0 m and 2.5 m"));
+  EXPECT_THAT(v.sentence, HasSubstr("would not make them right"));
+  EXPECT_THAT(v.sentence, Not(HasSubstr("lowest")));
+  list[0].evaluations = {alone("a", 2), example::failed("b", 1, "crashed", "boom")};
+  EXPECT_THAT(verdict(list).sentence, HasSubstr("a covers 2.0 m."));
+  EXPECT_THAT(verdict(list).note, HasSubstr("b gave no result"));
 }
 
 TEST(Verdict, IsPlainWhenNothingCame) {
