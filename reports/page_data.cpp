@@ -7,6 +7,7 @@
 
 #include "metrics/registry.h"
 #include "reports/page.h"
+#include "reports/page_comparisons.h"
 #include "reports/page_series.h"
 
 namespace tarmac::reports {
@@ -174,6 +175,7 @@ std::string page_data(const ReportInput& input, const Pictures& pictures) {
                         {"seeds", collected.seeds},
                         {"metrics", metric_table(collected.metrics)},
                         {"runs", collected.runs},
+                        {"comparisons", comparisons(input.runs)},
                         {"truth", collected.truth},
                         {"grids", writer.grids()},
                         {"pictures", to_json(pictures)},

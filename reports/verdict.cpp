@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "reports/page.h"
+#include "reports/page_comparisons.h"
 
 namespace tarmac::reports {
 
@@ -85,18 +86,41 @@ std::string spread(const Score& score) {
   return fmt::format(" (median of {} seeds, {} to {})", score.values.size(), percent(score.low), percent(score.high));
 }
 
-std::string how_sure(const Score& best, const Score& second) {
-  if (best.values.size() < 2 || second.values.size() < 2) {
+/// Where no ratio is defined, since a value is 0, ranges have to do.
+std::string by_ranges(const Score& best, const Score& second) {
+  return best.high < second.low
+             ? fmt::format("The ranges over the seeds do not overlap: {}'s worst run is better than {}'s best.",
+                           best.estimator, second.estimator)
+             : fmt::format(
+                   "The ranges over the seeds overlap ({}: {} to {}), so these runs do not settle which of the "
+                   "two is better.",
+                   second.estimator, percent(second.low), percent(second.high));
+}
+
+std::string interval(const metrics::PairedComparison& c) {
+  return fmt::format("95 % interval {:.2g} to {:.2g}, lower on {} of {} seeds", c.low, c.high, c.a_lower, c.pairs);
+}
+
+std::string how_sure(const Score& best, const Score& second, const metrics::PairedComparison& c) {
+  switch (c.difference) {
+    case metrics::Difference::lower:
+      return fmt::format("The difference is more than chance: seed by seed {} has {:.2g} times {}'s end error ({}).",
+                         best.estimator, c.ratio, second.estimator, interval(c));
+    case metrics::Difference::higher:  // the median says one thing, the mean ratio the other
+      return fmt::format("Seed by seed it is the other way round: {} has {:.2g} times {}'s end error ({}).",
+                         best.estimator, c.ratio, second.estimator, interval(c));
+    case metrics::Difference::not_significant:
+      return fmt::format("Seed by seed the ratio of the two is {:.2g} ({}): these runs do not settle which is better.",
+                         c.ratio, interval(c));
+    case metrics::Difference::too_few:
+      break;
+  }
+  const std::size_t seeds = std::min(best.values.size(), second.values.size());
+  if (seeds < 2) {
     return "This is one seed: a single drive says little about small differences. Run several to see the spread.";
   }
-  if (best.high < second.low) {
-    return fmt::format("The ranges over the seeds do not overlap: {}'s worst run is better than {}'s best.",
-                       best.estimator, second.estimator);
-  }
-  return fmt::format(
-      "The ranges over the seeds overlap ({}: {} to {}), so these runs do not settle which of the two is "
-      "better.",
-      second.estimator, percent(second.low), percent(second.high));
+  if (seeds > 2) return by_ranges(best, second);
+  return "Two seeds are too few to tell a difference from chance: run five.";
 }
 
 /// Paths but none of them true: a recording from outside.
@@ -174,6 +198,14 @@ Verdict verdict(const std::vector<ReportRun>& runs) {
             failed};
   }
   const Score& second = list[1];
+  const metrics::PairedComparison c = comparison_of(runs, best.estimator, second.estimator, kMetric);
+  const std::string note = join(how_sure(best, second, c), failed);
+  if (c.difference == metrics::Difference::not_significant) {
+    return {fmt::format("{} and {} do not differ significantly in end error: {} and {} of the distance driven (medians "
+                        "of {} seeds).",
+                        best.estimator, second.estimator, percent(best.median()), percent(second.median()), c.pairs),
+            note};
+  }
   const double times = second.median() / best.median();
   // A replay of the truth ends at 0: nothing is a finite number of times worse than that.
   const std::string next = best.median() > 0 && times < 1000 && times >= 1.05
@@ -182,7 +214,7 @@ Verdict verdict(const std::vector<ReportRun>& runs) {
                                : fmt::format("{} follows with {}", second.estimator, percent(second.median()));
   return {fmt::format("{} has the lowest end error: {} of the distance driven{}, {}.", best.estimator,
                       percent(best.median()), spread(best), next),
-          join(how_sure(best, second), failed)};
+          note};
 }
 
 }  // namespace tarmac::reports

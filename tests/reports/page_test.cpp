@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -151,6 +152,51 @@ TEST(PageData, WritesAnAxisThatSeriesShareOnce) {
   std::set<std::string> texts;
   for (const json& grid : data["grids"]) texts.insert(grid.dump());
   EXPECT_EQ(texts.size(), data["grids"].size());
+}
+
+ReportInput three_seeds() {
+  ReportInput input;
+  const double better[] = {0.20, 0.31, 0.39}, worse[] = {0.40, 0.60, 0.80};
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    input.runs.emplace_back();
+    input.runs.back().evaluations = {example::evaluation("worse", seed, worse[seed - 1]),
+                                     example::evaluation("better", seed, better[seed - 1])};
+  }
+  return input;
+}
+
+TEST(PageData, ComparesEstimatorsSeedBySeedInBothDirections) {
+  const json list = data_of(assemble_page(three_seeds(), {}))["comparisons"];
+  const auto find = [&](const char* a, const char* b, const char* metric) {
+    for (const json& c : list) {
+      if (c["a"] == a && c["b"] == b && c["metric"] == metric) return c;
+    }
+    throw std::runtime_error("no such comparison");
+  };
+  const json one = find("better", "worse", "end_error_percent"), other = find("worse", "better", "end_error_percent");
+  const double ratio = std::cbrt(0.20 * 0.31 * 0.39 / (0.40 * 0.60 * 0.80));  // geometric mean
+  EXPECT_NEAR(one["ratio"], ratio, 1e-5);
+  EXPECT_NEAR(other["ratio"], 1 / ratio, 1e-5);
+  EXPECT_EQ(one["difference"], "lower");
+  EXPECT_EQ(other["difference"], "higher");
+  EXPECT_EQ(one["a_lower"], 3);
+  EXPECT_EQ(other["a_lower"], 0);
+  EXPECT_LT(one["high"], 1);
+  EXPECT_NEAR(one["low"].get<double>() * other["high"].get<double>(), 1, 1e-5);
+  EXPECT_EQ(find("better", "worse", "deskew_error_rms_m")["difference"], "not_significant") << "equal on every seed";
+}
+
+TEST(PageData, GivesNoIntervalWhereSeedsAreTooFew) {
+  const json list = data_of(assemble_page(example::input(), {}))["comparisons"];  // one of two seeds crashed
+  ASSERT_FALSE(list.empty());
+  for (const json& c : list) {
+    EXPECT_EQ(c["difference"], "too_few");
+    EXPECT_EQ(c["pairs"], 1);
+    EXPECT_TRUE(c["low"].is_null() && c["high"].is_null());
+  }
+  ReportInput one_seed = example::input();
+  one_seed.runs.resize(1);
+  EXPECT_TRUE(data_of(assemble_page(one_seed, {}))["comparisons"].empty());
 }
 
 TEST(PageSeries, ShortOnesLeaveTheirShareToTheLong) {
