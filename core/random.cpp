@@ -174,7 +174,8 @@ void RandomStream::uniforms(std::uint64_t first, std::span<float> out) const {
 }
 
 void RandomStream::normals(std::uint64_t first, std::span<float> out) const {
-  // Block k/4 holds draws 4(k/4) .. +3: two Box-Muller pairs. Whole blocks are made and the wanted part copied out.
+  // Block k/4 holds draws 4(k/4) .. +3: two Box-Muller pairs. Whole blocks are made, in place where all of a block is
+  // wanted.
   float draws[4 * kBatchBlocks];
   std::uint32_t radius_bits[2 * kBatchBlocks], angle_bits[2 * kBatchBlocks];
   std::size_t done = 0;
@@ -188,9 +189,10 @@ void RandomStream::normals(std::uint64_t first, std::span<float> out) const {
                name_hash_ + kNormals,
                blocks},
               radius_bits, angle_bits);
-    box_muller(2 * blocks, radius_bits, angle_bits, draws);
     const std::size_t skip = (first + done) % 4, take = std::min(4 * blocks - skip, out.size() - done);
-    std::copy_n(draws + skip, take, out.begin() + static_cast<std::ptrdiff_t>(done));
+    const bool in_place = take == 4 * blocks;
+    box_muller(2 * blocks, radius_bits, angle_bits, in_place ? out.data() + done : draws);
+    if (!in_place) std::copy_n(draws + skip, take, out.begin() + static_cast<std::ptrdiff_t>(done));
     done += take;
   }
 }

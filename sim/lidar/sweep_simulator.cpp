@@ -113,16 +113,12 @@ void shift(raycast::Rays& rays, std::size_t i, const Vector3d& by) {
   rays.oz[i] += by.z();
 }
 
-template <class T>
-void append(std::vector<T>& to, const std::vector<T>& from, std::size_t count) {
-  to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
-}
-
-void clear(SimulatedSweep& out) {
+void resize(SimulatedSweep& out, std::size_t n) {
   core::LidarSweep& s = out.sweep;
-  s.x_m.clear(), s.y_m.clear(), s.z_m.clear(), s.t_ns.clear(), s.ring.clear(), s.intensity.clear();
-  out.instance.clear();
-  out.trace_cpu_s = 0;
+  for (auto* v : {&s.x_m, &s.y_m, &s.z_m, &s.intensity}) v->resize(n);
+  s.t_ns.resize(n);
+  s.ring.resize(n);
+  out.instance.resize(n);
 }
 
 }  // namespace
@@ -192,17 +188,17 @@ SimulatedSweep SweepSimulator::sweep(std::int64_t index) const {
 
 void SweepSimulator::sweep(std::int64_t index, Workspace& w, SimulatedSweep& out) const {
   const SweepSpan span = firing_.sweep(index);
-  clear(out);
   out.sweep.index = index;
   out.sweep.begin = span.begin;
   out.sweep.end = span.end;
   out.sweep.sensor = mounting_.sensor;
   out.rays = static_cast<std::size_t>(span.cycles) * firing_.channels();
-  out.sweep.reserve(out.rays);
-  out.instance.reserve(out.rays);
+  out.trace_cpu_s = 0;
+  resize(out, out.rays);
 
   const raycast::SweepTracer tracer = tracer_for(span);
   const SweepMotion motion = motion_of(span);
+  std::size_t points = 0;
   for (std::int64_t first = 0; first < span.cycles; first += static_cast<std::int64_t>(batch_cycles_)) {
     const std::size_t cycles = std::min(batch_cycles_, static_cast<std::size_t>(span.cycles - first));
     aim(span, motion, first, cycles, tracer.base(), w);
@@ -213,8 +209,9 @@ void SweepSimulator::sweep(std::int64_t index, Workspace& w, SimulatedSweep& out
       tracer.trace(w.rays, firing_.tiles(cycles), w.hits);
     out.trace_cpu_s += thread_cpu_s() - before_s;
     measure(span, first, w);
-    report(w, out);
+    points = report(w, points, out);
   }
+  resize(out, points);
 }
 
 AimedSweep SweepSimulator::aimed(std::int64_t index) const {
@@ -270,15 +267,13 @@ void SweepSimulator::measure(const SweepSpan& span, std::int64_t first, Workspac
   intensity_(e);
 }
 
-void SweepSimulator::report(Workspace& w, SimulatedSweep& out) const {
+// Returns how many points there are now.
+std::size_t SweepSimulator::report(Workspace& w, std::size_t points, SimulatedSweep& out) const {
   const std::size_t channels = firing_.channels(), firings = w.echoes.size();
   const Beams beams{beam_x_.data(), beam_y_.data(), beam_z_.data(), offset_s_.data()};
   const Echoes& e = w.echoes;
-  for (auto* v : {&w.x_m, &w.y_m, &w.z_m, &w.kept.x_m, &w.kept.y_m, &w.kept.z_m, &w.kept.intensity}) v->resize(firings);
-  w.kept.t_ns.resize(firings);
-  w.kept.ring.resize(firings);
-  w.kept_instance.resize(firings);
-  std::size_t kept = 0;
+  for (auto* v : {&w.x_m, &w.y_m, &w.z_m}) v->resize(firings);
+  core::LidarSweep& to = out.sweep;
   for (std::size_t k = 0, i = 0; k < w.cycles.size(); ++k) {
     const Cycle cycle = w.cycles[k].reported();
     const Vector3d origin = firing_.origin(cycle);
@@ -295,23 +290,17 @@ void SweepSimulator::report(Workspace& w, SimulatedSweep& out) const {
     }
     // Each is written; those that do not count are written over by the next.
     for (std::size_t c = 0; c < channels; ++c, ++i) {
-      w.kept.x_m[kept] = w.x_m[i];
-      w.kept.y_m[kept] = w.y_m[i];
-      w.kept.z_m[kept] = w.z_m[i];
-      w.kept.t_ns[kept] = w.rays.t_ns[i];
-      w.kept.ring[kept] = ring_[c];
-      w.kept.intensity[kept] = e.intensity[i];
-      w.kept_instance[kept] = w.hits.instance[i];
-      kept += (e.range_m[i] >= profile_.min_range_m) & (e.range_m[i] <= profile_.max_range_m);
+      to.x_m[points] = w.x_m[i];
+      to.y_m[points] = w.y_m[i];
+      to.z_m[points] = w.z_m[i];
+      to.t_ns[points] = w.rays.t_ns[i];
+      to.ring[points] = ring_[c];
+      to.intensity[points] = e.intensity[i];
+      out.instance[points] = w.hits.instance[i];
+      points += (e.range_m[i] >= profile_.min_range_m) & (e.range_m[i] <= profile_.max_range_m);
     }
   }
-  append(out.sweep.x_m, w.kept.x_m, kept);
-  append(out.sweep.y_m, w.kept.y_m, kept);
-  append(out.sweep.z_m, w.kept.z_m, kept);
-  append(out.sweep.t_ns, w.kept.t_ns, kept);
-  append(out.sweep.ring, w.kept.ring, kept);
-  append(out.sweep.intensity, w.kept.intensity, kept);
-  append(out.instance, w.kept_instance, kept);
+  return points;
 }
 
 }  // namespace tarmac::sim::lidar

@@ -46,8 +46,6 @@ struct Workspace {
   Echoes echoes;
   std::vector<Cycle> cycles;
   std::vector<float> x_m, y_m, z_m;  ///< points of all firings, in the sensor's frame
-  core::LidarSweep kept;             ///< those of a batch that are reported
-  std::vector<std::uint32_t> kept_instance;
 };
 
 /// The rays of a whole sweep and the tiles they are traced in.
@@ -87,7 +85,7 @@ class SweepSimulator {
   void aim(const SweepSpan& span, const SweepMotion& motion, std::int64_t first, std::size_t cycles,
            const Eigen::Vector3d& base, Workspace& w) const;
   void measure(const SweepSpan& span, std::int64_t first, Workspace& w) const;
-  void report(Workspace& w, SimulatedSweep& out) const;
+  std::size_t report(Workspace& w, std::size_t points, SimulatedSweep& out) const;
 
   Profile profile_;
   FiringTable firing_;

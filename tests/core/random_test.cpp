@@ -191,5 +191,16 @@ TEST(RandomStream, KindsOfDrawDoNotShareBits) {
   EXPECT_NE(stream.uniform(0, 0), stream.uniform(0, 1));
 }
 
+TEST(RandomStream, SingleDrawsAndBatchesAgreeAlsoAcrossTheCountersCarry) {
+  // A single draw takes one block, which Random123's own code makes; a batch goes four blocks at a time, across the
+  // carry into the counter's upper word too.
+  const RandomStream stream(9, "test/batches");
+  for (const std::uint64_t first : {0ull, 5ull, (1ull << 34) - 150, (1ull << 36) - 2}) {
+    const std::vector<float> batch = float_normals(stream, 400, first);
+    for (std::size_t k = 0; k < batch.size(); ++k)
+      ASSERT_EQ(batch[k], float_normals(stream, 1, first + k)[0]) << first << " " << k;
+  }
+}
+
 }  // namespace
 }  // namespace tarmac::core

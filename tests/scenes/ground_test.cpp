@@ -129,6 +129,29 @@ TEST(StandRelief, GroovesLieOnTheJointsAndNowhereElse) {
   EXPECT_LT(corner, 1.81 * 3e-3);
 }
 
+TEST(StandRelief, ManyPointsAtOnceAreTheSinglePointsToAMicrometreInTheFieldAndInJoints) {
+  const StandOptions options;
+  const StandRelief relief(options, 3);
+  const SlabGrid grid(options);
+  std::vector<double> x, y;
+  for (int k = 0; k < 5000; ++k) {
+    x.push_back(-60 + 0.0237 * k);
+    y.push_back(k % 3 == 0 ? grid.origin_m.y() + 4 * grid.size_m + 0.001 * (k % 40 - 20) : -40 + 0.0173 * k);
+  }
+  std::vector<float> height(x.size()), slope_x(x.size()), slope_y(x.size());
+  relief.heights_m(x.size(), x.data(), y.data(), height.data(), slope_x.data(), slope_y.data());
+  double deepest_m = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    Eigen::Vector2d gradient;
+    const double expected_m = relief.height_m(x[k], y[k], &gradient);
+    ASSERT_NEAR(height[k], expected_m, 1e-7) << k;
+    ASSERT_NEAR(slope_x[k], gradient.x(), 1e-5) << k;
+    ASSERT_NEAR(slope_y[k], gradient.y(), 1e-5) << k;
+    deepest_m = std::min(deepest_m, expected_m);
+  }
+  EXPECT_LT(deepest_m, -0.5e-3 * options.joint_depth_mm);  // joints were among them
+}
+
 TEST(Slabs, StepByMillimetresAtTheirJointsAndFollowTheBase) {
   const StandOptions options;
   const StandGround ground(options, 1);

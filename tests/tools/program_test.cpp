@@ -304,6 +304,24 @@ TEST_F(Program, PlainExportComesBackAsTheSameEstimates) {
   EXPECT_THAT(scored.text, HasSubstr("ate_se3_rmse_m"));
 }
 
+TEST_F(Program, BenchPrintsRowsAndRefusesWhatItDoesNotKnow) {
+  const Ended typo = tarmac({"bench", "simm"});
+  EXPECT_EQ(typo.code, 2);
+  EXPECT_THAT(typo.text, AllOf(HasSubstr("simm"), HasSubstr("did you mean 'sim'?"), HasSubstr("estimators")));
+  const Ended ended = tarmac({"bench", "metrics", "--json", "--quiet"});
+  ASSERT_EQ(ended.code, 0) << ended.text;
+  const auto rows = nlohmann::json::parse(ended.text);
+  ASSERT_EQ(rows.size(), 2u);
+  for (const auto& row : rows) {
+    EXPECT_EQ(row.at("bench"), "metrics");
+    EXPECT_EQ(row.at("unit"), "ms");
+    EXPECT_GT(row.at("value").get<double>(), 0);
+  }
+  EXPECT_EQ(rows[0].at("metric"), "evaluate_4541_ms");
+  // The process does the same work, and starts and reads files besides.
+  EXPECT_GT(rows[1].at("value").get<double>(), rows[0].at("value").get<double>());
+}
+
 TEST_F(Program, ListsAndDescribesWhatThereIs) {
   EXPECT_THAT(tarmac({"list"}).text, AllOf(HasSubstr("kiss-icp"), HasSubstr("ouster-os1-64-gen2"), HasSubstr("stand"),
                                            HasSubstr("end_error_percent")));

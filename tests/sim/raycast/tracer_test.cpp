@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "core/error.h"
@@ -240,6 +242,57 @@ TEST(Tracer, MicroReliefMovesOnlyWhatIsPavementAndKeepsTheMacroNormal) {
     largest_m = std::max(largest_m, std::abs(n.dot(p)));
   }
   EXPECT_GT(largest_m, 2e-3);
+}
+
+TEST(PackedTiles, MeetWhatTheTracerMeetsAgainAndAgain) {
+  scenes::Scene scene = tests::empty_scene();
+  const auto motion = std::make_shared<tests::SteadyActor>();
+  motion->p0_m = {10, 0, 0};
+  const std::int32_t actor = tests::add_actor(scene, motion, 2);
+  tests::add_instance(scene, tests::box({0.1, 3, 3}), tests::pose({20, 1, 0}));
+  tests::add_instance(scene, tests::box({1, 1, 1}), tests::pose({0, 0, 0}), actor);
+  const Tracer tracer(std::make_shared<scenes::Scene>(scene), {});
+  const SweepTracer sweep = tracer.sweep(time_from_s(0), time_from_s(sweep_s), Vector3d::Zero(), 150);
+  const std::vector<Shot> shots = fan(Vector3d::Zero(), Vector3d::UnitX(), 101, 0.3);
+  Rays rays;
+  rays.resize(shots.size());
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    rays.dx[i] = shots[i].direction.x(), rays.dy[i] = shots[i].direction.y(), rays.dz[i] = shots[i].direction.z();
+    rays.t_ns[i] = static_cast<std::int32_t>(i);
+  }
+  std::vector<std::uint32_t> order(112, SweepTracer::no_ray);
+  std::iota(order.begin(), order.begin() + 101, 0u);
+  Hits hits;
+  sweep.trace(rays, order, hits);
+  const auto met = static_cast<std::size_t>(
+      std::count_if(hits.instance.begin(), hits.instance.end(), [](std::uint32_t id) { return id != Hits::nothing; }));
+  PackedTiles packed = sweep.pack(rays, order);
+  EXPECT_EQ(packed.rays(), 101u);
+  for (int round = 0; round < 2; ++round) {
+    packed.reset();
+    EXPECT_EQ(packed.hits(), 0u);
+    packed.intersect();
+    EXPECT_EQ(packed.hits(), met);
+  }
+  EXPECT_GT(met, 20u);
+  EXPECT_LT(met, 101u);
+}
+
+TEST(Tracer, RaysThatNoTileHoldsMeetNothing) {
+  scenes::Scene scene = tests::empty_scene();
+  tests::add_instance(scene, tests::box({1, 50, 50}), tests::pose({20, 0, 0}));
+  const Tracer tracer(std::make_shared<scenes::Scene>(scene), {});
+  const SweepTracer sweep = tracer.sweep(time_from_s(0), time_from_s(sweep_s), Vector3d::Zero(), 150);
+  Rays rays;
+  rays.resize(2);
+  rays.dx = {1, 1};
+  std::vector<std::uint32_t> order(16, SweepTracer::no_ray);
+  order[0] = 1;
+  Hits hits;
+  sweep.trace(rays, order, hits);
+  EXPECT_EQ(hits.instance[0], Hits::nothing);
+  EXPECT_EQ(hits.t_m[0], std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(hits.t_m[1], 19, 1e-9);
 }
 
 }  // namespace
