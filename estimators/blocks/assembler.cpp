@@ -127,7 +127,7 @@ bool NormalEquations::solve(Eigen::VectorXd& x) const {
   if (!(diagonal.minCoeff() > 0) || !diagonal.allFinite()) return false;
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
   const Eigen::LDLT<Eigen::MatrixXd> ldlt(scale.asDiagonal() * H * scale.asDiagonal());
-  if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 1e-14)) return false;
+  if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 1e-12)) return false;
   const Eigen::VectorXd step = scale.asDiagonal() * ldlt.solve(-(scale.asDiagonal() * (g_data_ + g_prior_)));
   if (!step.allFinite()) return false;
   x = step;
