@@ -92,9 +92,7 @@ TEST(PointToPlane, JacobianMatchesCentralDifferencesAlsoNearZeroAndPi) {
   for (const double angle_rad : {0.0, 1e-9, 0.5, 3.14159}) {
     const PointToPlane plane{{30, -41, 5}, {0.3, -0.1, 0.9}, Eigen::Vector3d(-0.6, 0, 0.8)};
     const SE3 T = tests::some_pose(angle_rad, 20);
-    const auto moved = [&](const Vector6& xi) {
-      return Eigen::Matrix<double, 1, 1>(plane(T * core::se3::exp(xi)));
-    };
+    const auto moved = [&](const Vector6& xi) { return Eigen::Matrix<double, 1, 1>(plane(T * core::se3::exp(xi))); };
     Row6 J;
     EXPECT_EQ(plane(T, J), plane(T));
     const Vector6 zero = Vector6::Zero();

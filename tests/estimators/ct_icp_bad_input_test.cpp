@@ -122,8 +122,7 @@ TEST_F(CtIcpBadInput, TooFewPointsKeepThePredictionAndLeaveTheMapAlone) {
   make();
   const tests::Motion body = bend(3);
   feed_until(6, body);
-  const SweepOutcome poor =
-      estimator_->add(with_points(sweep(7, body), [](std::size_t i) { return i % 200 == 0; }));
+  const SweepOutcome poor = estimator_->add(with_points(sweep(7, body), [](std::size_t i) { return i % 200 == 0; }));
   EXPECT_EQ(poor.result.status, SweepStatus::lost);
   // The motion of the sweep before once more.
   EXPECT_LT(tests::pose_difference(poor.result.T_map_body, body(0.8)), 0.03);

@@ -38,9 +38,8 @@ struct Fixture {
 
   explicit Fixture(SegmentModel model = SegmentModel::two_pose_slerp, double noise_m = 0.02, int points = 600) {
     const SE3 T0 = tests::some_pose(0.3, 0.5);
-    truth = model == SegmentModel::held
-                ? Segment::hold(kBegin, kEnd, T0)
-                : Segment::two_pose(model, kBegin, T0, kEnd, T0 * tests::some_pose(0.15, 0.9));
+    truth = model == SegmentModel::held ? Segment::hold(kBegin, kEnd, T0)
+                                        : Segment::two_pose(model, kBegin, T0, kEnd, T0 * tests::some_pose(0.15, 0.9));
     const core::RandomStream random(1, "test/walls");
     const SegmentSampler sampler(truth);
     for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(points); ++i) {
@@ -133,12 +132,11 @@ std::string problem_name(const testing::TestParamInfo<std::tuple<SegmentModel, L
          losses[static_cast<int>(std::get<1>(info.param))];
 }
 
-INSTANTIATE_TEST_SUITE_P(Problems, EveryProblem,
-                         testing::Combine(testing::Values(SegmentModel::two_pose_slerp, SegmentModel::two_pose_screw,
-                                                          SegmentModel::held),
-                                          testing::Values(Loss::standard, Loss::cauchy, Loss::huber, Loss::tolerant,
-                                                          Loss::truncated)),
-                         problem_name);
+INSTANTIATE_TEST_SUITE_P(
+    Problems, EveryProblem,
+    testing::Combine(testing::Values(SegmentModel::two_pose_slerp, SegmentModel::two_pose_screw, SegmentModel::held),
+                     testing::Values(Loss::standard, Loss::cauchy, Loss::huber, Loss::tolerant, Loss::truncated)),
+    problem_name);
 
 TEST(ElasticProblem, RegularisersAreOneByOneThoseOfTheirDefinition) {
   const Fixture fixture;

@@ -96,9 +96,8 @@ struct TwoPoseDrive {
     return within(static_cast<std::size_t>(sweep), std::clamp(t_s / 0.1 - sweep, 0.0, 1.0));
   }
   core::SE3 within(std::size_t k, double s) const {
-    const core::Segment segment =
-        core::Segment::two_pose(core::SegmentModel::two_pose_slerp, core::time_from_ns(0), begins[k],
-                                core::time_from_ns(1'000'000'000), ends[k]);
+    const core::Segment segment = core::Segment::two_pose(core::SegmentModel::two_pose_slerp, core::time_from_ns(0),
+                                                          begins[k], core::time_from_ns(1'000'000'000), ends[k]);
     return segment.pose(core::time_from_ns(std::llround(s * 1e9)));
   }
   /// Of sweep k alone, as a function of the recording's time.

@@ -214,8 +214,8 @@ TEST_P(EveryLoss, DerivativesMatchCentralDifferencesAndSmallResidualsCountInFull
 INSTANTIATE_TEST_SUITE_P(Losses, EveryLoss, testing::Values("standard", "cauchy", "huber", "tolerant", "truncated"));
 
 TEST(RobustLoss, WeightsOfLargeResiduals) {
-  EXPECT_DOUBLE_EQ((RobustLoss{Loss::cauchy, 0.1, 0}(0.01).first), 0.5);     // at r = c
-  EXPECT_DOUBLE_EQ((RobustLoss{Loss::huber, 0.1, 0}(0.04).first), 0.5);      // at r = 2c
+  EXPECT_DOUBLE_EQ((RobustLoss{Loss::cauchy, 0.1, 0}(0.01).first), 0.5);  // at r = c
+  EXPECT_DOUBLE_EQ((RobustLoss{Loss::huber, 0.1, 0}(0.04).first), 0.5);   // at r = 2c
   EXPECT_DOUBLE_EQ((RobustLoss{Loss::truncated, 0.1, 0}(0.04).first), 0);
   EXPECT_DOUBLE_EQ((RobustLoss{Loss::tolerant, 0.1, 0.05}(0.05).first), 0.5);  // at s = t
   EXPECT_THROW(loss_named("welsch"), std::invalid_argument);
