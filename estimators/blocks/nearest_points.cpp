@@ -31,27 +31,10 @@ struct Axis {
   double d2(int step) const { return distance2[static_cast<std::size_t>(step + kMaxReach)]; }
 };
 
-/// Keeps the nearest in a sorted row: with twenty or so to keep, moving a few up is cheaper than a heap.
-void keep(NearestPoints& found, int max_points, double d2, double dx, double dy, double dz) {
-  int k = found.count < max_points ? found.count++ : max_points - 1;
-  for (; k > 0 && found.distance2_m2[static_cast<std::size_t>(k - 1)] > d2; --k) {
-    const auto to = static_cast<std::size_t>(k), from = to - 1;
-    found.distance2_m2[to] = found.distance2_m2[from];
-    found.x_m[to] = found.x_m[from];
-    found.y_m[to] = found.y_m[from];
-    found.z_m[to] = found.z_m[from];
-  }
-  const auto i = static_cast<std::size_t>(k);
-  found.distance2_m2[i] = d2;
-  found.x_m[i] = dx;
-  found.y_m[i] = dy;
-  found.z_m[i] = dz;
-}
-
 }  // namespace
 
 NearestPointsFinder::NearestPointsFinder(const VoxelMap& map, const NearestSearch& search)
-    : map_(map), search_(search) {
+    : map_(map), settings_(search) {
   if (search.max_points < 1 || search.max_points > NearestPoints::kCapacity || search.reach < 1 ||
       search.reach > Axis::kMaxReach) {
     throw std::invalid_argument("NearestSearch: 1 to 64 points, 1 to 8 voxels each way");
@@ -76,31 +59,50 @@ NearestPointsFinder::NearestPointsFinder(const VoxelMap& map, const NearestSearc
   std::stable_sort(cells_.begin(), cells_.end(), [&](const Cell& a, const Cell& b) { return cost(a) < cost(b); });
 }
 
-void NearestPointsFinder::find(const Eigen::Vector3d& query, NearestPoints& found) const {
-  found.count = 0;
+int NearestPointsFinder::search(const Eigen::Vector3d& query, double radius2_m2, Candidate* kept) const {
   const double cell = map_.voxel_size_m();
-  if (!has_voxel(query, cell)) return;
   const Voxel own = voxel_of(query, cell);
-  const Axis x(query.x(), own.x, cell, search_.reach), y(query.y(), own.y, cell, search_.reach),
-      z(query.z(), own.z, cell, search_.reach);
-  const double radius2 = search_.radius_m * search_.radius_m;
+  const Axis x(query.x(), own.x, cell, settings_.reach), y(query.y(), own.y, cell, settings_.reach),
+      z(query.z(), own.z, cell, settings_.reach);
   // The slack covers rounding of the cells' faces.
   const double slack = 1e-9 * cell * cell;
-  double bound2 = radius2;
   const double qx = query.x(), qy = query.y(), qz = query.z();
+  const int wanted = settings_.max_points;
+  double bound2 = radius2_m2;
+  int count = 0;
   for (const Cell& c : cells_) {
     if (x.d2(c.x) + y.d2(c.y) + z.d2(c.z) > bound2 + slack) continue;
     const VoxelMap::Points points = map_.points_in({x.at(c.x), y.at(c.y), z.at(c.z)});
-    for (int k = 0; k < points.count; ++k) {
-      const double dx = points.x_m[k] - qx, dy = points.y_m[k] - qy, dz = points.z_m[k] - qz;
+    for (int p = 0; p < points.count; ++p) {
+      const double dx = points.x_m[p] - qx, dy = points.y_m[p] - qy, dz = points.z_m[p] - qz;
       const double d2 = dx * dx + dy * dy + dz * dz;
-      if (!(d2 < bound2 || (d2 <= radius2 && found.count < search_.max_points))) continue;
-      keep(found, search_.max_points, d2, dx, dy, dz);
-      if (found.count == search_.max_points) {
-        bound2 = std::min(radius2, found.distance2_m2[static_cast<std::size_t>(search_.max_points - 1)]);
-      }
+      // The radius itself is within; once enough are kept, only nearer ones count.
+      if (!(d2 < bound2 || (count < wanted && d2 == bound2))) continue;
+      // A sorted row: with twenty or so to keep, moving a few up is cheaper than a heap.
+      int k = count < wanted ? count++ : wanted - 1;
+      for (; k > 0 && kept[k - 1].distance2_m2 > d2; --k) kept[k] = kept[k - 1];
+      kept[k] = {d2, points.x_m + p, points.y_m + p, points.z_m + p};
+      if (count == wanted) bound2 = kept[wanted - 1].distance2_m2;
     }
   }
+  return count;
+}
+
+void NearestPointsFinder::find(const Eigen::Vector3d& query, NearestPoints& found, double expected_m) const {
+  found.count = 0;
+  if (!has_voxel(query, map_.voxel_size_m())) return;
+  std::array<Candidate, NearestPoints::kCapacity> kept;
+  const double radius2 = settings_.radius_m * settings_.radius_m, expected2 = expected_m * expected_m;
+  int count = 0;
+  if (expected2 < radius2) count = search(query, expected2, kept.data());
+  if (count < settings_.max_points) count = search(query, radius2, kept.data());
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+    found.distance2_m2[k] = kept[k].distance2_m2;
+    found.x_m[k] = *kept[k].x_m - query.x();
+    found.y_m[k] = *kept[k].y_m - query.y();
+    found.z_m[k] = *kept[k].z_m - query.z();
+  }
+  found.count = count;
 }
 
 }  // namespace tarmac::estimators

@@ -38,15 +38,24 @@ class NearestPointsFinder {
  public:
   /// Throws std::invalid_argument when max_points is above the capacity or reach below 1.
   NearestPointsFinder(const VoxelMap& map, const NearestSearch& search);
+  /// `expected_m` may be an upper bound of the distance of the last point to be found, such as follows from a search
+  /// nearby: it only saves time. Where fewer than max_points are within it, the search is done again without.
   /// May be called from several threads.
-  void find(const Eigen::Vector3d& query, NearestPoints& found) const;
+  void find(const Eigen::Vector3d& query, NearestPoints& found,
+            double expected_m = std::numeric_limits<double>::infinity()) const;
 
  private:
+  struct Candidate {
+    double distance2_m2;
+    const double *x_m, *y_m, *z_m;
+  };
+  int search(const Eigen::Vector3d& query, double radius2_m2, Candidate* kept) const;
+
   struct Cell {
     std::int8_t x, y, z;  ///< steps: 0 the same, -k and +k across the k nearer and farther faces
   };
   const VoxelMap& map_;
-  NearestSearch search_;
+  NearestSearch settings_;
   std::vector<Cell> cells_;
 };
 

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <limits>
 
 #include "estimators/blocks/plane_fit.h"
 
@@ -13,12 +14,18 @@ namespace {
 using Eigen::Vector3d;
 
 Association associate_one(const NearestPointsFinder& finder, const AssociationSettings& settings,
-                          const core::SE3& T_map_body, const Vector3d& p_body_lidar, const Keypoint& keypoint) {
+                          const core::SE3& T_map_body, const Vector3d& p_body_lidar, const Keypoint& keypoint,
+                          const Association& before) {
   Association a;
   const Vector3d p_map = T_map_body * keypoint.p_body;
   NearestPoints neighbours;
-  finder.find(p_map, neighbours);
+  // The neighbours of the search before are no farther than they were, plus the way that the point has gone.
+  const double expected_m = before.reached_m < 0 ? std::numeric_limits<double>::infinity()
+                                                 : before.reached_m + (p_map - before.searched_at_map).norm() + 1e-9;
+  finder.find(p_map, neighbours, expected_m);
   if (neighbours.count < settings.min_neighbours) return a;
+  a.searched_at_map = p_map;
+  if (neighbours.count == settings.search.max_points) a.reached_m = neighbours.offset(neighbours.count - 1).norm();
   const PlaneFit plane = fit_plane(neighbours);
   const Vector3d to_q = neighbours.offset(settings.farthest_plane_point ? neighbours.count - 1 : 0);
   a.q_map = p_map + to_q;
@@ -50,7 +57,8 @@ int associate(const VoxelMap& map, const AssociationSettings& settings, const co
   const SegmentSampler sampler(motion);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keypoints.size(), 64), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k) {
-      associations[k] = associate_one(finder, settings, sampler.pose(keypoints[k].alpha), p_body_lidar, keypoints[k]);
+      associations[k] = associate_one(finder, settings, sampler.pose(keypoints[k].alpha), p_body_lidar, keypoints[k],
+                                      associations[k]);
     }
   });
   int used = 0;

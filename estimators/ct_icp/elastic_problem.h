@@ -23,6 +23,10 @@ struct Association {
   Eigen::Vector3d q_map = Eigen::Vector3d::Zero();
   Eigen::Vector3d n_map = Eigen::Vector3d::UnitZ();
   double weight = 0;  ///< w: the residual is w n^T (p_map - q)
+  /// Where the keypoint was looked up and how far its last neighbour lay: the next search starts from that. Negative:
+  /// there were too few.
+  Eigen::Vector3d searched_at_map = Eigen::Vector3d::Zero();
+  double reached_m = -1;
 };
 
 /// Regularisers, all by the poses of the sweep before. Each enters the cost as N beta |.|^2 / 2, N being the number of

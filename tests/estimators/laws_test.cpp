@@ -15,6 +15,19 @@ namespace {
 using core::SE3;
 using core::SweepStatus;
 
+/// Surfaces for the methods that need them, and points off them for those that match points.
+std::vector<Eigen::Vector3d> world_points() {
+  const std::vector<Eigen::Vector3d> points = tests::wall_points();
+  const std::vector<Eigen::Vector3d> landmarks = tests::landmarks(18, 2.4, 0.8);
+  // Mixed, so that firing order has nothing to do with which is which.
+  std::vector<Eigen::Vector3d> mixed;
+  for (std::size_t i = 0; i < std::max(points.size(), landmarks.size()); ++i) {
+    if (i < points.size()) mixed.push_back(points[i]);
+    if (i < landmarks.size()) mixed.push_back(landmarks[i]);
+  }
+  return mixed;
+}
+
 class EveryEstimator : public testing::TestWithParam<const EstimatorEntry*> {
  protected:
   RunResult run(const core::Recording& recording, int threads = 1) {
@@ -65,7 +78,7 @@ class EveryEstimator : public testing::TestWithParam<const EstimatorEntry*> {
 
 TEST_P(EveryEstimator, AStillRigGivesAStillTrajectory) {
   std::vector<core::LidarSweep> sweeps;
-  const std::vector<Eigen::Vector3d> world = tests::wall_points();
+  const std::vector<Eigen::Vector3d> world = world_points();
   for (int k = 0; k < 30; ++k) sweeps.push_back(tests::sweep_at(k, world, tests::still(), {.noise_m = 0.005}));
   const RunResult result = run(tests::write_recording(folder_ / "still", rig_, sweeps, tests::imu_at_rest(rig_, 3)));
   std::vector<SE3> poses;

@@ -57,6 +57,13 @@ TEST(NearestPoints, AreThoseOfABruteForceSearchOverTheSameCells) {
         finder.find(query, found);
         const std::vector<double> expected = by_brute_force(map, search, query);
         ASSERT_EQ(static_cast<std::size_t>(found.count), expected.size());
+        // An expectation changes nothing, right or wrong.
+        for (const double factor : {1.1, 1.0000001, 0.5}) {
+          NearestPoints again;
+          finder.find(query, again, factor * (expected.empty() ? 1 : expected.back()));
+          ASSERT_EQ(again.count, found.count);
+          for (int k = 0; k < found.count; ++k) EXPECT_EQ(again.offset(k), found.offset(k));
+        }
         for (int k = 0; k < found.count; ++k) {
           EXPECT_NEAR(found.offset(k).norm(), expected[static_cast<std::size_t>(k)], 1e-12);
           EXPECT_NEAR(std::sqrt(found.distance2_m2[static_cast<std::size_t>(k)]), expected[static_cast<std::size_t>(k)],
