@@ -11,23 +11,15 @@
 namespace tarmac::core {
 namespace {
 
-ChunkData chunk_of(const SweepDiagnostics& s) {
-  ChunkData data;
-  const std::int64_t numbers[] = {s.index,
-                                  s.iterations,
-                                  s.converged,
-                                  s.points_in,
-                                  s.points_used,
-                                  s.residuals,
-                                  static_cast<std::int64_t>(s.rows.size())};
-  data.add<std::int64_t>(numbers);
-  data.add_value(s.scale_m);
-  data.add<double>({s.H_data.data(), 36});
-  data.add<double>({s.H_prior.data(), 36});
+/// Three columns: times, sensors, and value, weight, jacobian one after the other.
+void add_rows(const std::vector<ResidualRow>& rows, ChunkData& data) {
   std::vector<std::int32_t> t_ns;
   std::vector<std::uint16_t> sensor;
   std::vector<float> values;
-  for (const ResidualRow& row : s.rows) {
+  t_ns.reserve(rows.size());
+  sensor.reserve(rows.size());
+  values.reserve(8 * rows.size());
+  for (const ResidualRow& row : rows) {
     t_ns.push_back(row.t_ns);
     sensor.push_back(row.sensor);
     values.push_back(row.value);
@@ -37,19 +29,42 @@ ChunkData chunk_of(const SweepDiagnostics& s) {
   data.add<std::int32_t>(t_ns);
   data.add<std::uint16_t>(sensor);
   data.add<float>(values);
+}
+
+[[noreturn]] void wrong_shape(const std::string& where) {
+  throw DamagedFile(fmt::format("{}: a sweep's diagnostics have a wrong shape", where));
+}
+
+std::vector<ResidualRow> rows_of(const ChunkData& data, std::size_t column, const std::string& where) {
+  const auto t_ns = data.column<std::int32_t>(column);
+  const auto sensor = data.column<std::uint16_t>(column + 1);
+  const auto values = data.column<float>(column + 2);
+  if (sensor.size() != t_ns.size() || values.size() != 8 * t_ns.size()) wrong_shape(where);
+  std::vector<ResidualRow> rows(t_ns.size());
+  for (std::size_t i = 0; i < t_ns.size(); ++i) {
+    const float* v = values.data() + 8 * i;
+    rows[i] = {t_ns[i], v[0], v[1], {v[2], v[3], v[4], v[5], v[6], v[7]}, sensor[i]};
+  }
+  return rows;
+}
+
+ChunkData chunk_of(const SweepDiagnostics& s) {
+  ChunkData data;
+  const std::int64_t numbers[] = {s.index,       s.iterations, s.converged,       s.points_in,
+                                  s.points_used, s.residuals,  s.rows_are_surface};
+  data.add<std::int64_t>(numbers);
+  data.add_value(s.scale_m);
+  data.add<double>({s.H_data.data(), 36});
+  data.add<double>({s.H_prior.data(), 36});
+  add_rows(s.rows, data);
+  add_rows(s.surface, data);
   return data;
 }
 
 SweepDiagnostics from_chunk(const ChunkData& data, const std::string& where) {
   const auto numbers = data.column<std::int64_t>(0);
   const auto H_data = data.column<double>(2), H_prior = data.column<double>(3);
-  const auto t_ns = data.column<std::int32_t>(4);
-  const auto sensor = data.column<std::uint16_t>(5);
-  const auto values = data.column<float>(6);
-  if (numbers.size() != 7 || H_data.size() != 36 || H_prior.size() != 36 || sensor.size() != t_ns.size() ||
-      values.size() != 8 * t_ns.size()) {
-    throw DamagedFile(fmt::format("{}: a sweep's diagnostics have a wrong shape", where));
-  }
+  if (numbers.size() != 7 || H_data.size() != 36 || H_prior.size() != 36) wrong_shape(where);
   SweepDiagnostics s;
   s.index = numbers[0];
   s.iterations = static_cast<int>(numbers[1]);
@@ -57,15 +72,19 @@ SweepDiagnostics from_chunk(const ChunkData& data, const std::string& where) {
   s.points_in = static_cast<std::int32_t>(numbers[3]);
   s.points_used = static_cast<std::int32_t>(numbers[4]);
   s.residuals = static_cast<std::int32_t>(numbers[5]);
+  s.rows_are_surface = numbers[6] != 0;
   s.scale_m = data.value<double>(1);
   s.H_data = Eigen::Map<const Matrix6>(H_data.data());
   s.H_prior = Eigen::Map<const Matrix6>(H_prior.data());
-  s.rows.resize(t_ns.size());
-  for (std::size_t i = 0; i < t_ns.size(); ++i) {
-    const float* v = values.data() + 8 * i;
-    s.rows[i] = {t_ns[i], v[0], v[1], {v[2], v[3], v[4], v[5], v[6], v[7]}, sensor[i]};
-  }
+  s.rows = rows_of(data, 4, where);
+  s.surface = rows_of(data, 7, where);
   return s;
+}
+
+std::filesystem::path part_of(const std::filesystem::path& file) {
+  std::filesystem::path part = file;
+  part += ".part";
+  return part;
 }
 
 }  // namespace
@@ -77,21 +96,44 @@ DiagnosticsLevel diagnostics_level(const std::string& name) {
   throw InputError(fmt::format("--diagnostics {}: expected none, system or full", name));
 }
 
+DiagnosticsWriter::DiagnosticsWriter(const std::filesystem::path& file)
+    : file_(file), writer_(std::make_unique<ChunkWriter>(part_of(file))) {}
+
+DiagnosticsWriter::~DiagnosticsWriter() = default;
+
+void DiagnosticsWriter::append(const SweepDiagnostics& sweep) {
+  writer_->append(Time{}, chunk_of(sweep));
+}
+
+void DiagnosticsWriter::finish() {
+  writer_->finish();
+  writer_.reset();
+  std::filesystem::rename(part_of(file_), file_);
+}
+
+DiagnosticsReader::DiagnosticsReader(const std::filesystem::path& file)
+    : file_(file), reader_(std::make_unique<ChunkReader>(file)) {}
+
+DiagnosticsReader::~DiagnosticsReader() = default;
+
+std::size_t DiagnosticsReader::size() const {
+  return reader_->size();
+}
+
+SweepDiagnostics DiagnosticsReader::read(std::size_t i) const {
+  return from_chunk(reader_->read(i), file_.string());
+}
+
 void save_diagnostics(const std::filesystem::path& file, const std::vector<SweepDiagnostics>& sweeps) {
-  std::filesystem::path part = file;
-  part += ".part";
-  {
-    ChunkWriter writer(part);
-    for (const SweepDiagnostics& sweep : sweeps) writer.append(Time{}, chunk_of(sweep));
-    writer.finish();
-  }
-  std::filesystem::rename(part, file);
+  DiagnosticsWriter writer(file);
+  for (const SweepDiagnostics& sweep : sweeps) writer.append(sweep);
+  writer.finish();
 }
 
 std::vector<SweepDiagnostics> load_diagnostics(const std::filesystem::path& file) {
-  const ChunkReader reader(file);
+  const DiagnosticsReader reader(file);
   std::vector<SweepDiagnostics> sweeps;
-  for (std::size_t i = 0; i < reader.size(); ++i) sweeps.push_back(from_chunk(reader.read(i), file.string()));
+  for (std::size_t i = 0; i < reader.size(); ++i) sweeps.push_back(reader.read(i));
   return sweeps;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,8 @@ DiagnosticsLevel diagnostics_level(const std::string& name);  ///< throws InputE
 
 /// One scalar residual of the last iteration. The Jacobian is by the pose at the point's own time, body frame, right
 /// perturbation, translation first: r(T Exp(xi)) = value + jacobian xi. A vector residual gives one row an axis.
+/// A point-to-surface row has value = n^T (p_map - q_map), n the surface's normal turned towards the sensor: positive
+/// where the point lies in front of the surface; jacobian[0..2] is then n along the body's axes.
 struct ResidualRow {
   std::int32_t t_ns = 0;  ///< point time from the sweep's begin
   float value = 0;        ///< unit of the residual, unweighted [m]
@@ -40,6 +43,10 @@ struct SweepDiagnostics {
   Matrix6 H_data = Matrix6::Zero();   ///< sum of w J^T J over data residuals, at the sweep's reference instant
   Matrix6 H_prior = Matrix6::Zero();  ///< the same of priors and regularisers
   std::vector<ResidualRow> rows;      ///< level full
+  bool rows_are_surface = false;      ///< `rows` are point-to-surface rows; `surface` stays empty then
+  /// Level full: point-to-surface residuals of a method that solves with others, seen against its own map at the end
+  /// of its iterations. No part of H_data: they are there for the residual-over-time instrument.
+  std::vector<ResidualRow> surface;
 };
 
 /// Times of one sweep; kept apart from SweepDiagnostics, since no two runs have the same.
@@ -50,6 +57,32 @@ struct SweepTiming {
   std::vector<std::pair<std::string, double>> stages_ms;
 };
 
+/// diagnostics.bin, a sweep at a time. Written under another name and renamed by finish(): a file of that name is
+/// whole.
+class DiagnosticsWriter {
+ public:
+  explicit DiagnosticsWriter(const std::filesystem::path& file);
+  ~DiagnosticsWriter();
+  void append(const SweepDiagnostics& sweep);
+  void finish();
+
+ private:
+  std::filesystem::path file_;
+  std::unique_ptr<class ChunkWriter> writer_;
+};
+class DiagnosticsReader {
+ public:
+  /// Throws DamagedFile when the file is not whole.
+  explicit DiagnosticsReader(const std::filesystem::path& file);
+  ~DiagnosticsReader();
+  std::size_t size() const;
+  /// May be called from several threads.
+  SweepDiagnostics read(std::size_t i) const;
+
+ private:
+  std::filesystem::path file_;
+  std::unique_ptr<class ChunkReader> reader_;
+};
 void save_diagnostics(const std::filesystem::path& file, const std::vector<SweepDiagnostics>& sweeps);
 std::vector<SweepDiagnostics> load_diagnostics(const std::filesystem::path& file);
 

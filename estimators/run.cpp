@@ -89,8 +89,8 @@ void guarded(const Call& call) {
 class Runner {
  public:
   Runner(const EstimatorEntry& entry, Estimator& estimator, core::DiagnosticsLevel level, std::size_t sweeps,
-         const core::Progress& progress)
-      : entry_(entry), estimator_(estimator), level_(level), sweeps_(sweeps), progress_(progress) {}
+         const core::Progress& progress, const DiagnosticsSink& sink)
+      : entry_(entry), estimator_(estimator), level_(level), sweeps_(sweeps), progress_(progress), sink_(sink) {}
 
   void run(const core::Recording& recording, RunResult& result) {
     recording.replay(
@@ -146,7 +146,14 @@ class Runner {
       result.log.push_back(fmt::format("sweep {}: no point left", sweep.index));
       if (needs(entry_, Needs::lidar)) outcome.result.status = core::SweepStatus::empty;
     }
-    guarded([&] { keep(std::move(outcome), result); });
+    guarded([&] { keep(outcome, result); });
+    if (level_ != core::DiagnosticsLevel::none) {
+      if (sink_) {
+        sink_(outcome.diagnostics);
+      } else {
+        result.diagnostics.push_back(std::move(outcome.diagnostics));
+      }
+    }
     if (progress_) progress_(static_cast<double>(seen_) / static_cast<double>(sweeps_), note());
   }
 
@@ -161,7 +168,7 @@ class Runner {
     result.estimate.sweeps.push_back(dropped);
   }
 
-  void keep(SweepOutcome&& outcome, RunResult& result) {
+  void keep(SweepOutcome& outcome, RunResult& result) {
     const core::SweepResult& sweep = outcome.result;
     if (sweep.status == core::SweepStatus::lost) {
       result.log.push_back(fmt::format("sweep {}: lost, the prediction was kept", sweep.index));
@@ -173,7 +180,6 @@ class Runner {
     for (core::Segment& segment : outcome.motion) result.estimate.causal.append(std::move(segment));
     result.estimate.sweeps.push_back(sweep);
     result.timing.sweeps.push_back({sweep.index, wall_ms_, cpu_ms_, std::move(outcome.stages_ms)});
-    if (level_ != core::DiagnosticsLevel::none) result.diagnostics.push_back(std::move(outcome.diagnostics));
     total_wall_ms_ += wall_ms_;
     wall_ms_ = cpu_ms_ = 0;
   }
@@ -183,6 +189,7 @@ class Runner {
   core::DiagnosticsLevel level_;
   std::size_t sweeps_, seen_ = 0, dropped_imu_ = 0;
   const core::Progress& progress_;
+  const DiagnosticsSink& sink_;
   std::optional<Time> last_imu_, last_end_;
   double wall_ms_ = 0, cpu_ms_ = 0, total_wall_ms_ = 0;
 };
@@ -190,7 +197,7 @@ class Runner {
 }  // namespace
 
 RunResult run_estimator(const core::Recording& recording, const EstimatorEntry& entry, const core::ConfigNode& options,
-                        const EstimatorContext& context, const core::Progress& progress) {
+                        const EstimatorContext& context, const core::Progress& progress, const DiagnosticsSink& sink) {
   const double wall = wall_s(), cpu = cpu_s();
   RunResult result;
   result.estimate.estimator = entry.name;
@@ -203,7 +210,7 @@ RunResult run_estimator(const core::Recording& recording, const EstimatorEntry& 
     if (recording.rig().lidars.size() > 1) result.log.push_back("several LiDARs: only the first one's sweeps are used");
     if (recording.rig().imus.size() > 1) result.log.push_back("several IMUs: only the first one's samples are used");
     try {
-      Runner(entry, *estimator, context.diagnostics, recording.sweep_count(), progress).run(recording, result);
+      Runner(entry, *estimator, context.diagnostics, recording.sweep_count(), progress, sink).run(recording, result);
     } catch (const EstimatorFailure& failure) {
       result.estimate.status = core::RunStatus::failed;
       result.estimate.message = failure.what();

@@ -1,14 +1,19 @@
 /// Runs one estimator over one recording: the loop that every method shares.
 #pragma once
 
+#include <functional>
+
 #include "core/progress.h"
 #include "estimators/estimator.h"
 
 namespace tarmac::estimators {
 
+/// Takes a sweep's diagnostics as soon as they are there: in full they are too large to be kept for a whole run.
+using DiagnosticsSink = std::function<void(const core::SweepDiagnostics&)>;
+
 struct RunResult {
   core::Estimate estimate;
-  std::vector<core::SweepDiagnostics> diagnostics;
+  std::vector<core::SweepDiagnostics> diagnostics;  ///< empty where a sink took them
   core::RunTiming timing;
   std::vector<std::string> log;  ///< what was unusual: dropped points, sweeps out of order, empty sweeps
 };
@@ -19,8 +24,9 @@ struct RunResult {
 /// sensors are absent ends with RunStatus::not_initialised; one that throws, or returns a pose that is not finite or a
 /// motion that overlaps the last one's, ends with RunStatus::failed and keeps what it gave until then. Of several
 /// LiDARs or IMUs the first is used. Bad options throw InputError; whatever `progress` throws ends the run.
-/// A sweep's time includes that of the IMU samples since the one before, and leaves out reading and decoding.
+/// A sweep's time includes that of the IMU samples since the one before, and leaves out reading, decoding and the sink.
 RunResult run_estimator(const core::Recording& recording, const EstimatorEntry& entry, const core::ConfigNode& options,
-                        const EstimatorContext& context, const core::Progress& progress);
+                        const EstimatorContext& context, const core::Progress& progress,
+                        const DiagnosticsSink& sink = {});
 
 }  // namespace tarmac::estimators

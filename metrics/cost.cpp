@@ -39,19 +39,28 @@ void add_cost_rows(const RunTiming* timing, const Estimate& estimate, RowSet& ro
   if (timing->peak_memory_mb > 0) rows.put("peak_memory_mb", timing->peak_memory_mb);
 }
 
-void add_effort_rows(const std::vector<SweepDiagnostics>* diagnostics, RowSet& rows) {
+std::vector<SweepEffort> effort_of(const DiagnosticsSource& diagnostics) {
+  std::vector<SweepEffort> effort;
+  for (std::size_t i = 0; i < diagnostics.count; ++i) {
+    const SweepDiagnostics sweep = diagnostics.sweep(i);
+    effort.push_back({sweep.index, sweep.iterations});
+  }
+  return effort;
+}
+
+void add_effort_rows(const std::vector<SweepEffort>* effort, RowSet& rows) {
   std::vector<double> iterations;
-  if (diagnostics)
-    for (const SweepDiagnostics& sweep : *diagnostics)
+  if (effort)
+    for (const SweepEffort& sweep : *effort)
       if (sweep.iterations > 0) iterations.push_back(sweep.iterations);
   if (iterations.empty())
-    rows.missing("iterations_mean", diagnostics ? "the method does not iterate" : "the run recorded no diagnostics");
+    rows.missing("iterations_mean", effort ? "the method does not iterate" : "the run recorded no diagnostics");
   else
     rows.put("iterations_mean", mean(iterations));
 }
 
-void add_cost_series(const RunTiming* timing, const std::vector<SweepDiagnostics>* diagnostics,
-                     const Estimate& estimate, Time t_zero, std::vector<Series>& series) {
+void add_cost_series(const RunTiming* timing, const std::vector<SweepEffort>* effort, const Estimate& estimate,
+                     Time t_zero, std::vector<Series>& series) {
   const std::map<std::int64_t, double> times = end_times_s(estimate, t_zero);
   Series wall{"sweep_time_vs_time", "time [s]", "wall time a sweep [ms]", {}, {}, {}, {}};
   Series iterations{"iterations_vs_time", "time [s]", "iterations", {}, {}, {}, {}};
@@ -63,8 +72,8 @@ void add_cost_series(const RunTiming* timing, const std::vector<SweepDiagnostics
   };
   if (timing)
     for (const SweepTiming& sweep : timing->sweeps) append(wall, sweep.index, sweep.wall_ms);
-  if (diagnostics)
-    for (const SweepDiagnostics& sweep : *diagnostics) append(iterations, sweep.index, sweep.iterations);
+  if (effort)
+    for (const SweepEffort& sweep : *effort) append(iterations, sweep.index, sweep.iterations);
   if (!wall.x.empty()) series.push_back(std::move(wall));
   if (!iterations.x.empty()) series.push_back(std::move(iterations));
 }

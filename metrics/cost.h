@@ -7,6 +7,7 @@
 #include "core/estimate.h"
 #include "metrics/evaluation.h"
 #include "metrics/row_set.h"
+#include "metrics/sweep_source.h"
 
 namespace tarmac::metrics {
 
@@ -14,11 +15,18 @@ namespace tarmac::metrics {
 /// time), peak_memory_mb. `timing` may be nullptr: n/a.
 void add_cost_rows(const core::RunTiming* timing, const core::Estimate& estimate, RowSet& rows);
 
-/// iterations_mean, over sweeps that took at least one. `diagnostics` may be nullptr: n/a.
-void add_effort_rows(const std::vector<core::SweepDiagnostics>* diagnostics, RowSet& rows);
+/// How many iterations a sweep took.
+struct SweepEffort {
+  std::int64_t index = 0;
+  int iterations = 0;
+};
+std::vector<SweepEffort> effort_of(const DiagnosticsSource& diagnostics);
+
+/// iterations_mean, over sweeps that took at least one. `effort` may be nullptr: n/a.
+void add_effort_rows(const std::vector<SweepEffort>* effort, RowSet& rows);
 
 /// sweep_time_vs_time and iterations_vs_time, over the time of the sweep's end.
-void add_cost_series(const core::RunTiming* timing, const std::vector<core::SweepDiagnostics>* diagnostics,
+void add_cost_series(const core::RunTiming* timing, const std::vector<SweepEffort>* effort,
                      const core::Estimate& estimate, core::Time t_zero, std::vector<Series>& series);
 
 }  // namespace tarmac::metrics

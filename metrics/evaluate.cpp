@@ -46,16 +46,17 @@ std::uint64_t finite_points(const LidarSweep& sweep) {
 }
 
 void check(const EvaluationInput& input) {
-  if (input.labels.size() != input.sweeps.count)
+  if (!input.truth) return;
+  if (!input.labels || input.labels->size() != input.sweeps.count)
     throw InputError(
         fmt::format("the recording has {} sweeps and the truth labels of {}: they do not belong together; evaluate "
                     "each recording with the truth that was written beside it",
-                    input.sweeps.count, input.labels.size()));
-  if (!input.truth.motion) throw InputError("the truth has no motion: nothing can be evaluated against it");
-  for (const Rig* rig : {&input.sweeps.rig, &input.truth.rig})
+                    input.sweeps.count, input.labels ? input.labels->size() : 0));
+  if (!input.truth->motion) throw InputError("the truth has no motion: nothing can be evaluated against it");
+  for (const Rig* rig : {&input.sweeps.rig, &input.truth->rig})
     if (rig->lidars.size() <= input.sweeps.lidar)
       throw InputError(
-          fmt::format("the {} rig has no lidar {}", rig == &input.truth.rig ? "true" : "nominal", input.sweeps.lidar));
+          fmt::format("the {} rig has no lidar {}", rig == &input.truth->rig ? "true" : "nominal", input.sweeps.lidar));
 }
 
 /// How many of `total` fall to the k-th of n: they add up, and differ by one at most.
@@ -67,9 +68,9 @@ PointErrors score_points(const EvaluationInput& input, const EvaluateSettings& s
                          std::size_t map_points) {
   const std::optional<Fit> se3 = align(subject.pairs, Alignment::se3, input.estimate.gravity_aligned);
   const PointScorer scorer{subject.trajectory,
-                           *input.truth.motion,
+                           *input.truth->motion,
                            input.sweeps.rig.lidars[input.sweeps.lidar].T_body_lidar,
-                           input.truth.rig.lidars[input.sweeps.lidar].T_body_lidar,
+                           input.truth->rig.lidars[input.sweeps.lidar].T_body_lidar,
                            first_pose_alignment(subject.pairs),
                            se3->A.T_world_map,
                            settings.phase_bins};
@@ -88,7 +89,8 @@ PointErrors score_points(const EvaluationInput& input, const EvaluateSettings& s
     }
     const PosePair& pair = subject.pairs[found->second];
     const std::size_t sample = share(map_points, found->second, subject.pairs.size());
-    result.sweeps[i] = score_sweep(scorer, sweep, input.labels[i], pair.t, pair.T_map_body, sample, histograms.local());
+    result.sweeps[i] =
+        score_sweep(scorer, sweep, (*input.labels)[i], pair.t, pair.T_map_body, sample, histograms.local());
   };
   const int threads = std::max(1, settings.threads);
   const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -107,9 +109,9 @@ PointErrors score_points(const EvaluationInput& input, const EvaluateSettings& s
 
 void add_paths(const EvaluationInput& input, const std::vector<PosePair>& pairs, std::vector<Series>& series) {
   Series truth{"path_true", "x [m]", "y [m]", {}, {}, {}, {}};
-  for (const PointLabels& sweep : input.labels) {
-    if (!input.truth.motion->covers(sweep.end)) continue;
-    const Eigen::Vector3d p = input.truth.motion->pose(sweep.end).translation();
+  for (const PointLabels& sweep : *input.labels) {
+    if (!input.truth->motion->covers(sweep.end)) continue;
+    const Eigen::Vector3d p = input.truth->motion->pose(sweep.end).translation();
     truth.x.push_back(p.x());
     truth.y.push_back(p.y());
   }
@@ -131,9 +133,9 @@ void add_paths(const EvaluationInput& input, const std::vector<PosePair>& pairs,
 void add_motion(const EvaluationInput& input, Time t_zero, std::vector<Series>& series) {
   Series speed{"speed_vs_time", "time [s]", "true speed [m/s]", {}, {}, {}, {}};
   Series yaw_rate{"yaw_rate_vs_time", "time [s]", "true yaw rate [deg/s]", {}, {}, {}, {}};
-  for (const PointLabels& sweep : input.labels) {
-    if (!input.truth.motion->covers(sweep.end)) continue;
-    const Kinematics k = input.truth.motion->at(sweep.end);
+  for (const PointLabels& sweep : *input.labels) {
+    if (!input.truth->motion->covers(sweep.end)) continue;
+    const Kinematics k = input.truth->motion->at(sweep.end);
     speed.x.push_back(to_s(sweep.end - t_zero));
     speed.y.push_back(k.v_world.norm());
     yaw_rate.x.push_back(to_s(sweep.end - t_zero));
@@ -151,19 +153,42 @@ void gather_map(std::vector<SweepErrors>& sweeps, MapSample& map) {
   }
 }
 
+/// When the drive begins: by the truth's clock, or the recording's.
+Time time_zero(const EvaluationInput& input) {
+  if (input.truth) return input.labels->empty() ? Time{} : input.labels->front().begin;
+  return input.estimate.sweeps.empty() ? Time{} : input.estimate.sweeps.front().begin;
+}
+
+/// What the run itself says, truth or no truth.
+void add_run_figures(const EvaluationInput& input, Time t_zero, RowSet& rows, std::vector<Series>& series) {
+  std::vector<SweepEffort> effort;
+  if (input.diagnostics) effort = effort_of(*input.diagnostics);
+  const std::vector<SweepEffort>* known = input.diagnostics ? &effort : nullptr;
+  add_cost_rows(input.timing, input.estimate, rows);
+  add_effort_rows(known, rows);
+  add_cost_series(input.timing, known, input.estimate, t_zero, series);
+}
+
+void keep_rows(const RowSet& rows, Evaluation& evaluation) {
+  const std::vector<Row> made = rows.rows();
+  evaluation.rows.insert(evaluation.rows.end(), made.begin(), made.end());
+}
+
+void put_coverage(std::size_t scored, std::size_t sweeps, RowSet& rows, double& coverage) {
+  coverage = sweeps ? static_cast<double>(scored) / static_cast<double>(sweeps) : 0;
+  rows.put("coverage_percent", 100 * coverage);
+}
+
 void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& settings, const Subject& subject,
                       bool headline, Evaluation& evaluation) {
-  const Time t_zero = input.labels.empty() ? Time{} : input.labels.front().begin;
+  const Time t_zero = time_zero(input);
   RowSet rows(subject.name);
-  const double coverage =
-      input.sweeps.count ? static_cast<double>(subject.pairs.size()) / static_cast<double>(input.sweeps.count) : 0;
-  rows.put("coverage_percent", 100 * coverage);
+  double coverage = 0;
+  put_coverage(subject.pairs.size(), input.sweeps.count, rows, coverage);
   if (headline) {
     evaluation.coverage = coverage;
-    add_cost_rows(input.timing, input.estimate, rows);
-    add_effort_rows(input.diagnostics, rows);
-    if (!input.labels.empty()) add_motion(input, t_zero, evaluation.series);
-    add_cost_series(input.timing, input.diagnostics, input.estimate, t_zero, evaluation.series);
+    if (!input.labels->empty()) add_motion(input, t_zero, evaluation.series);
+    add_run_figures(input, t_zero, rows, evaluation.series);
   }
   if (!subject.pairs.empty()) {
     add_trajectory_rows(subject.pairs, {.gravity_aligned = input.estimate.gravity_aligned}, rows);
@@ -179,8 +204,24 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
   rows.all_missing(subject.pairs.empty() ? "no sweep is scored"
                    : headline            ? "no value"
                                          : "stated of the headline estimate");
-  const std::vector<Row> made = rows.rows();
-  evaluation.rows.insert(evaluation.rows.end(), made.begin(), made.end());
+  keep_rows(rows, evaluation);
+}
+
+/// A recording from outside: what the run says of itself, and the path as estimated.
+void evaluate_alone(const EvaluationInput& input, Evaluation& evaluation) {
+  const Time t_zero = time_zero(input);
+  RowSet rows(input.estimate.has_causal ? "causal" : "final");
+  Series path{"path_estimate", "x [m]", "y [m]", {}, {}, {}, {}};
+  for (const SweepResult& sweep : input.estimate.sweeps) {
+    if (sweep.status != SweepStatus::ok) continue;
+    path.x.push_back(sweep.T_map_body.translation().x());
+    path.y.push_back(sweep.T_map_body.translation().y());
+  }
+  put_coverage(path.x.size(), input.sweeps.count, rows, evaluation.coverage);
+  add_run_figures(input, t_zero, rows, evaluation.series);
+  evaluation.series.push_back(std::move(path));
+  rows.all_missing("the recording has no truth");
+  keep_rows(rows, evaluation);
 }
 
 }  // namespace
@@ -188,18 +229,22 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
 Evaluation evaluate(const EvaluationInput& input, const EvaluateSettings& settings) {
   check(input);
   Evaluation evaluation;
-  evaluation.scenario = input.truth.scenario;
-  evaluation.seed = input.truth.seed;
+  if (input.truth) evaluation.scenario = input.truth->scenario;
+  if (input.truth) evaluation.seed = input.truth->seed;
   evaluation.estimator = input.estimate.estimator;
   if (input.estimate.status != RunStatus::ok) evaluation.status = name_of(input.estimate.status);
   evaluation.message = input.estimate.message;
+  if (!input.truth) {
+    evaluate_alone(input, evaluation);
+    return evaluation;
+  }
   if (input.estimate.has_causal || !input.estimate.has_final)
     evaluate_subject(input, settings,
-                     {"causal", false, input.estimate.causal, pair_poses(input.estimate, false, *input.truth.motion)},
+                     {"causal", false, input.estimate.causal, pair_poses(input.estimate, false, *input.truth->motion)},
                      true, evaluation);
   if (input.estimate.has_final)
     evaluate_subject(input, settings,
-                     {"final", true, input.estimate.final, pair_poses(input.estimate, true, *input.truth.motion)},
+                     {"final", true, input.estimate.final, pair_poses(input.estimate, true, *input.truth->motion)},
                      !input.estimate.has_causal, evaluation);
   return evaluation;
 }

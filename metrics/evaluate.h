@@ -32,19 +32,20 @@ inline constexpr const char* kHeadlinePhaseSeries = "reference_error_by_phase";
 struct EvaluationInput {
   const core::Estimate& estimate;
   SweepSource sweeps;
-  const sim::truth::GroundTruth& truth;
-  const std::vector<sim::truth::PointLabels>& labels;                ///< one a sweep of the recording
-  const core::RunTiming* timing = nullptr;                           ///< nullptr: cost is n/a
-  const std::vector<core::SweepDiagnostics>* diagnostics = nullptr;  ///< nullptr: iterations are n/a
+  /// nullptr for a recording from outside: what needs the truth is n/a then.
+  const sim::truth::GroundTruth* truth = nullptr;
+  const std::vector<sim::truth::PointLabels>* labels = nullptr;  ///< one a sweep of the recording; goes with the truth
+  const core::RunTiming* timing = nullptr;                       ///< nullptr: cost is n/a
+  const DiagnosticsSource* diagnostics = nullptr;                ///< nullptr: what is read from them is n/a
 };
 
 /// All metrics: every one of the registry has a row, with a value or the reason why not. A function of the input alone:
 /// the same bytes at any number of threads. Throws InputError when truth and recording do not belong together.
 Evaluation evaluate(const EvaluationInput& input, const EvaluateSettings& settings);
 
-/// The same with labels from the truth's folder. `timing` and `diagnostics` may be nullptr.
+/// The same with labels from the truth's folder. `truth`, `timing` and `diagnostics` may be nullptr.
 Evaluation evaluate(const core::Estimate& estimate, const core::Recording& recording,
-                    const sim::truth::GroundTruth& truth, const core::RunTiming* timing,
-                    const EvaluateSettings& settings, const std::vector<core::SweepDiagnostics>* diagnostics = nullptr);
+                    const sim::truth::GroundTruth* truth, const core::RunTiming* timing,
+                    const EvaluateSettings& settings, const DiagnosticsSource* diagnostics = nullptr);
 
 }  // namespace tarmac::metrics

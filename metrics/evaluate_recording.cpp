@@ -4,10 +4,11 @@
 namespace tarmac::metrics {
 
 Evaluation evaluate(const core::Estimate& estimate, const core::Recording& recording,
-                    const sim::truth::GroundTruth& truth, const core::RunTiming* timing,
-                    const EvaluateSettings& settings, const std::vector<core::SweepDiagnostics>* diagnostics) {
-  const std::vector<sim::truth::PointLabels> labels = truth.labels();
-  return evaluate({estimate, sweeps_of(recording), truth, labels, timing, diagnostics}, settings);
+                    const sim::truth::GroundTruth* truth, const core::RunTiming* timing,
+                    const EvaluateSettings& settings, const DiagnosticsSource* diagnostics) {
+  std::vector<sim::truth::PointLabels> labels;
+  if (truth) labels = truth->labels();
+  return evaluate({estimate, sweeps_of(recording), truth, &labels, timing, diagnostics}, settings);
 }
 
 }  // namespace tarmac::metrics

@@ -154,15 +154,28 @@ SweepDiagnostics example_diagnostics(std::uint64_t number) {
     d.H_data(k / 6, k % 6) = stream.normal(0, k);
     d.H_prior(k / 6, k % 6) = stream.normal(1, k);
   }
+  d.rows_are_surface = number == 1;
   for (std::uint64_t i = 0; i < 20 * number; ++i) {
     const auto f = [&](std::uint32_t j) { return static_cast<float>(stream.normal(i + 2, j)); };
-    d.rows.push_back({static_cast<std::int32_t>(i) - 5,
-                      f(0),
-                      f(1),
-                      {f(2), f(3), f(4), f(5), f(6), f(7)},
-                      static_cast<std::uint16_t>(i)});
+    (i % 3 == 0 ? d.surface : d.rows)
+        .push_back({static_cast<std::int32_t>(i) - 5,
+                    f(0),
+                    f(1),
+                    {f(2), f(3), f(4), f(5), f(6), f(7)},
+                    static_cast<std::uint16_t>(i)});
   }
   return d;
+}
+
+void expect_same_rows(const std::vector<ResidualRow>& a, const std::vector<ResidualRow>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].t_ns, b[i].t_ns);
+    EXPECT_EQ(a[i].value, b[i].value);
+    EXPECT_EQ(a[i].weight, b[i].weight);
+    EXPECT_EQ(a[i].sensor, b[i].sensor);
+    for (int j = 0; j < 6; ++j) EXPECT_EQ(a[i].jacobian[j], b[i].jacobian[j]);
+  }
 }
 
 TEST(Diagnostics, RoundTripBitExactly) {
@@ -181,18 +194,22 @@ TEST(Diagnostics, RoundTripBitExactly) {
     EXPECT_EQ(back[k].scale_m, sweeps[k].scale_m);
     EXPECT_EQ(back[k].H_data, sweeps[k].H_data);
     EXPECT_EQ(back[k].H_prior, sweeps[k].H_prior);
-    ASSERT_EQ(back[k].rows.size(), sweeps[k].rows.size());
-    for (std::size_t i = 0; i < back[k].rows.size(); ++i) {
-      const ResidualRow &a = back[k].rows[i], &b = sweeps[k].rows[i];
-      EXPECT_EQ(a.t_ns, b.t_ns);
-      EXPECT_EQ(a.value, b.value);
-      EXPECT_EQ(a.weight, b.weight);
-      EXPECT_EQ(a.sensor, b.sensor);
-      for (int j = 0; j < 6; ++j) EXPECT_EQ(a.jacobian[j], b.jacobian[j]);
-    }
+    EXPECT_EQ(back[k].rows_are_surface, sweeps[k].rows_are_surface);
+    expect_same_rows(back[k].rows, sweeps[k].rows);
+    expect_same_rows(back[k].surface, sweeps[k].surface);
   }
   save_diagnostics(folder / "none.bin", {});
   EXPECT_TRUE(load_diagnostics(folder / "none.bin").empty());
+}
+
+TEST(Diagnostics, AFileThatWasNotFinishedIsNotThere) {
+  const tests::TemporaryFolder folder;
+  {
+    DiagnosticsWriter writer(folder / "diagnostics.bin");
+    writer.append(example_diagnostics(1));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "diagnostics.bin"));
+  EXPECT_THROW(DiagnosticsReader(folder / "diagnostics.bin.part"), DamagedFile);
 }
 
 TEST(Diagnostics, LevelsHaveNames) {

@@ -165,8 +165,9 @@ TEST_F(EvaluationTest, CostComesFromTheRunsRecords) {
   const Drive drive = wobbly_drive();
   const RunTiming timing = some_timing();
   const std::vector<SweepDiagnostics> diagnostics = some_diagnostics();
+  const DiagnosticsSource source = diagnostics_of(diagnostics);
   const Estimate estimate = bent(drive);
-  const Evaluation e = evaluate({estimate, drive.source(), drive.truth, drive.labels, &timing, &diagnostics}, {});
+  const Evaluation e = evaluate({estimate, drive.source(), &drive.truth, &drive.labels, &timing, &source}, {});
   EXPECT_DOUBLE_EQ(*e.row("sweep_time_p50_ms")->value, 17);
   EXPECT_DOUBLE_EQ(*e.row("sweep_time_p95_ms")->value, 10 + 14 * 0.95);
   EXPECT_DOUBLE_EQ(*e.row("sweep_cpu_p50_ms")->value, 27);
@@ -211,13 +212,40 @@ TEST_F(EvaluationTest, TheMapSampleIsEvenAndHoldsEachPointsOwnError) {
   EXPECT_EQ(few.map.p_world_m.size(), 36u);  // one of every 8 points
 }
 
+TEST_F(EvaluationTest, WithoutTruthSaysWhatTheRunItselfTellsAndNothingElse) {
+  const Drive drive = wobbly_drive();
+  const RunTiming timing = some_timing();
+  const std::vector<SweepDiagnostics> diagnostics = some_diagnostics();
+  const DiagnosticsSource source = diagnostics_of(diagnostics);
+  Estimate estimate = bent(drive);
+  estimate.sweeps[4].status = SweepStatus::lost;
+  const Evaluation e = evaluate({estimate, drive.source(), nullptr, nullptr, &timing, &source}, {});
+  EXPECT_EQ(e.status, "ok");
+  EXPECT_DOUBLE_EQ(*e.row("coverage_percent")->value, 100 * 14.0 / 15);
+  EXPECT_DOUBLE_EQ(*e.row("sweep_time_p50_ms")->value, 17);
+  EXPECT_DOUBLE_EQ(*e.row("iterations_mean")->value, 7.5);
+  for (const char* needs_truth : {"ate_se3_rmse_m", "rpe_1sweep_trans_rmse_m", "end_error_percent", "path_length_m",
+                                  "deskew_error_rms_m", "point_error_rms_m", "point_coverage_percent"}) {
+    ASSERT_NE(e.row(needs_truth), nullptr) << needs_truth;
+    EXPECT_FALSE(e.row(needs_truth)->value) << needs_truth;
+    EXPECT_EQ(e.row(needs_truth)->status, "n/a: the recording has no truth");
+  }
+  const Series* path = e.find("path_estimate");
+  ASSERT_NE(path, nullptr);
+  EXPECT_EQ(path->x.size(), 14U);
+  EXPECT_EQ(path->x.front(), estimate.sweeps.front().T_map_body.translation().x());
+  EXPECT_EQ(e.find("path_true"), nullptr);
+  EXPECT_TRUE(e.map.p_world_m.empty());
+}
+
 TEST_F(EvaluationTest, ComesBackFromItsFilesExactly) {
   const Drive drive = wobbly_drive();
   const RunTiming timing = some_timing();
   const std::vector<SweepDiagnostics> diagnostics = some_diagnostics();
+  const DiagnosticsSource source = diagnostics_of(diagnostics);
   Estimate estimate = bent(drive);
   estimate.sweeps[4].status = SweepStatus::lost;  // a NaN in path_estimate
-  Evaluation e = evaluate({estimate, drive.source(), drive.truth, drive.labels, &timing, &diagnostics}, {});
+  Evaluation e = evaluate({estimate, drive.source(), &drive.truth, &drive.labels, &timing, &source}, {});
   e.seed = 18446744073709551615u;
   e.status = "crashed";
   e.message = "last words: \"\n\t\u00e9";
@@ -238,10 +266,10 @@ TEST_F(EvaluationTest, TimesLieInAFileOfTheirOwn) {
   const Drive drive = wobbly_drive();
   const Estimate estimate = bent(drive);
   RunTiming timing = some_timing();
-  save_evaluation(folder_ / "a", evaluate({estimate, drive.source(), drive.truth, drive.labels, &timing}, {}));
+  save_evaluation(folder_ / "a", evaluate({estimate, drive.source(), &drive.truth, &drive.labels, &timing}, {}));
   for (SweepTiming& sweep : timing.sweeps) sweep.wall_ms *= 1.1;
   timing.peak_memory_mb = 7;
-  save_evaluation(folder_ / "b", evaluate({estimate, drive.source(), drive.truth, drive.labels, &timing}, {}));
+  save_evaluation(folder_ / "b", evaluate({estimate, drive.source(), &drive.truth, &drive.labels, &timing}, {}));
   EXPECT_EQ(read_file(folder_ / "a/evaluation.json"), read_file(folder_ / "b/evaluation.json"));
   EXPECT_NE(read_file(folder_ / "a/cost.json"), read_file(folder_ / "b/cost.json"));
 }
@@ -291,7 +319,7 @@ TEST_F(EvaluationTest, FromDiskEqualsFromMemory) {
   drive.truth.folder = folder_ / "truth";
   drive.nominal = recording.rig();  // a rotation's last digit may change on its way through the data sheet
   const Estimate estimate = bent(drive);
-  expect_same(drive.evaluate(estimate), evaluate(estimate, recording, drive.truth, nullptr, {}));
+  expect_same(drive.evaluate(estimate), evaluate(estimate, recording, &drive.truth, nullptr, {}));
   EXPECT_EQ(make_control(drive.truth, recording).sweeps.size(), 15u);
 }
 

@@ -71,7 +71,7 @@ SweepSource Drive::source() const {
 }
 
 Evaluation Drive::evaluate(const Estimate& estimate, const EvaluateSettings& settings) const {
-  return metrics::evaluate({estimate, source(), truth, labels}, settings);
+  return metrics::evaluate({estimate, source(), &truth, &labels}, settings);
 }
 
 Drive make_drive(std::shared_ptr<const SmoothTrajectory> motion, const DriveShape& shape,

@@ -13,6 +13,8 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <optional>
 
 #include "core/error.h"
 #include "estimators/registry.h"
@@ -23,7 +25,7 @@ namespace tarmac::tools {
 namespace {
 
 struct Arguments {
-  std::string recording, estimator, options, output, diagnostics = "system";
+  std::string recording, estimator, options, output, diagnostics = "full";
   int jobs = 1;
   int progress_fd = STDERR_FILENO;
 };
@@ -88,9 +90,14 @@ int estimate(const Arguments& a) {
   const core::Recording recording = core::Recording::open(a.recording);
   say(fmt::format("{}: {} sweeps of recording {}, threads: {}", entry.name,
                   recording.rig().lidars.empty() ? 0 : recording.sweep_count(), recording.hash(), a.jobs));
+  std::optional<core::DiagnosticsWriter> diagnostics;  // without a sweep there is no file
   const estimators::RunResult run = estimators::run_estimator(
       recording, entry, options, {.rig = recording.rig(), .threads = a.jobs, .diagnostics = level},
-      ProgressLines(a.progress_fd));
+      ProgressLines(a.progress_fd), [&](const core::SweepDiagnostics& sweep) {
+        if (!diagnostics) diagnostics.emplace(std::filesystem::path(a.output) / "diagnostics.bin");
+        diagnostics->append(sweep);
+      });
+  if (diagnostics) diagnostics->finish();
   write_outputs(a.output, run);
   log_run(run);
   return run.estimate.status == core::RunStatus::failed ? 3 : 0;

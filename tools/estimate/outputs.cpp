@@ -43,7 +43,8 @@ std::vector<io::StampedPose> reference_poses(const core::Estimate& estimate) {
 void begin_outputs(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (!error) std::filesystem::remove(folder / "trajectory.bin", error);
+  for (const char* earlier : {"trajectory.bin", "diagnostics.bin"})
+    if (!error) std::filesystem::remove(folder / earlier, error);
   if (error) {
     throw core::InputError(fmt::format("--output {}: {}; give a folder that can be created and written to",
                                        folder.string(), error.message()));
@@ -52,12 +53,6 @@ void begin_outputs(const std::filesystem::path& folder) {
 
 void write_outputs(const std::filesystem::path& folder, const estimators::RunResult& run) {
   const std::string& name = run.estimate.estimator;
-  if (!run.diagnostics.empty()) {
-    core::save_diagnostics(folder / "diagnostics.bin", run.diagnostics);
-  } else {
-    std::error_code absent;  // one of an earlier run would be taken for this one's
-    std::filesystem::remove(folder / "diagnostics.bin", absent);
-  }
   core::save_timing(folder / "timing.json", run.timing);
   io::write_tum(folder / "trajectory.tum", dense_poses(run.estimate), fmt::format("T_map_body of {}, dense", name));
   io::write_tum(folder / "reference.tum", reference_poses(run.estimate),

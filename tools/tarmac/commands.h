@@ -24,7 +24,7 @@ struct ScenarioArguments {
   std::vector<std::string> sets;
   std::string config;  ///< file with an `estimators:` block
   std::string estimators = "all";
-  std::string diagnostics = "system";
+  std::string diagnostics = "full";
   bool fast = false;
 };
 int run_command(const ScenarioArguments& arguments, const CommonArguments& common);
@@ -36,7 +36,7 @@ struct EstimateArguments {
   std::string estimators = "all";
   std::string config;
   std::vector<std::string> sets;  ///< "kiss-icp.voxel_size_m=0.5"
-  std::string diagnostics = "system";
+  std::string diagnostics = "full";
 };
 int estimate_command(const EstimateArguments& arguments, const CommonArguments& common);
 

@@ -41,7 +41,7 @@ std::string resolved_options(const EstimatorRequest& request);
 
 struct EstimatorRunSettings {
   int threads = 1;
-  std::string diagnostics = "system";
+  std::string diagnostics = "full";
 };
 
 /// Runs them one after the other; results go to `folder`/<name>/, each put in place whole. Earlier results of the same

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "core/error.h"
 #include "metrics/evaluate.h"
 #include "sim/truth/ground_truth.h"
@@ -19,11 +21,11 @@ fs::path resolve(const RunFolder& run, const std::string& path) {
 }
 
 metrics::Evaluation evaluate_one(const fs::path& folder, const Outcome& outcome, const core::Recording& recording,
-                                 const sim::truth::GroundTruth& truth, int threads) {
+                                 const sim::truth::GroundTruth* truth, int threads) {
   if (outcome.status != "ok") {
     metrics::Evaluation evaluation;
-    evaluation.scenario = truth.scenario;
-    evaluation.seed = truth.seed;
+    if (truth) evaluation.scenario = truth->scenario;
+    if (truth) evaluation.seed = truth->seed;
     evaluation.estimator = outcome.estimator;
     evaluation.status = outcome.status;
     evaluation.message = outcome.message;
@@ -31,23 +33,22 @@ metrics::Evaluation evaluate_one(const fs::path& folder, const Outcome& outcome,
   }
   const core::Estimate estimate = core::load_estimate(folder / "trajectory.bin");
   const core::RunTiming timing = core::load_timing(folder / "timing.json");
-  std::vector<core::SweepDiagnostics> diagnostics;
-  const bool has_diagnostics = fs::is_regular_file(folder / "diagnostics.bin");
-  if (has_diagnostics) diagnostics = core::load_diagnostics(folder / "diagnostics.bin");
-  return metrics::evaluate(estimate, recording, truth, &timing, {.threads = threads},
-                           has_diagnostics ? &diagnostics : nullptr);
+  std::optional<core::DiagnosticsReader> reader;
+  metrics::DiagnosticsSource diagnostics;
+  if (fs::is_regular_file(folder / "diagnostics.bin")) {
+    reader.emplace(folder / "diagnostics.bin");
+    diagnostics = metrics::diagnostics_of(*reader);
+  }
+  return metrics::evaluate(estimate, recording, truth, &timing, {.threads = threads}, reader ? &diagnostics : nullptr);
 }
 
 }  // namespace
 
 std::vector<metrics::Evaluation> evaluate_run(const RunFolder& run, int threads, const Console& console) {
   const Provenance provenance = load_provenance(run.provenance());
-  if (provenance.truth.empty()) {
-    throw core::InputError(fmt::format("{}: its recording has no truth (a foreign recording), so nothing can be scored",
-                                       run.root.string()));
-  }
   const core::Recording recording = core::Recording::open(resolve(run, provenance.recording));
-  const sim::truth::GroundTruth truth = sim::truth::load_ground_truth(resolve(run, provenance.truth));
+  std::optional<sim::truth::GroundTruth> truth;  // a recording from outside has none
+  if (!provenance.truth.empty()) truth = sim::truth::load_ground_truth(resolve(run, provenance.truth));
   const std::vector<fs::path> folders = estimator_folders(run);
   const core::Progress progress = console.progress("evaluate");
   std::vector<metrics::Evaluation> evaluations;
@@ -59,7 +60,7 @@ std::vector<metrics::Evaluation> evaluate_run(const RunFolder& run, int threads,
                       folders[i].string(), outcome.recording_hash, recording.hash()));
     }
     progress(static_cast<double>(i) / static_cast<double>(folders.size()), outcome.estimator);
-    evaluations.push_back(evaluate_one(folders[i], outcome, recording, truth, threads));
+    evaluations.push_back(evaluate_one(folders[i], outcome, recording, truth ? &*truth : nullptr, threads));
     metrics::save_evaluation(folders[i], evaluations.back());
   }
   progress(1.0, "");

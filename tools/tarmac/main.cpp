@@ -57,7 +57,7 @@ void add_scenario_options(CLI::App* command, Arguments& a, bool needs_out) {
 void add_estimator_options(CLI::App* command, std::string& estimators, std::string& config, std::string& diagnostics) {
   command->add_option("-e,--estimators", estimators, "names separated by commas, or all (the default)");
   command->add_option("--config", config, "YAML file with an `estimators:` block");
-  command->add_option("--diagnostics", diagnostics, "what is recorded per sweep: none, system (default) or full")
+  command->add_option("--diagnostics", diagnostics, "what is recorded per sweep: none, system or full (default)")
       ->check(CLI::IsMember({"none", "system", "full"}));
 }
 

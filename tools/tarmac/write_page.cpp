@@ -17,22 +17,28 @@ namespace tarmac::tools {
 void write_page(const std::vector<RunFolder>& runs, const std::filesystem::path& html_file, const Console& console) {
   reports::ReportInput input;
   std::optional<scenes::Scene> scene;
+  bool first = true;
   for (const RunFolder& run : runs) {
     const Provenance provenance = load_provenance(run.provenance());
-    if (!scene) {
+    const std::string shown = provenance.truth.empty() ? "recording " + provenance.recording_hash : provenance.scenario;
+    if (first && provenance.truth.empty()) {
+      input.title = shown;
+      input.why = "A recording from outside: nobody knows its true motion, so what needs the truth is n/a.";
+    } else if (first) {
       const scenarios::Scenario scenario = scenarios::load_scenario(run.scenario(), {});
       input.title = scenario.name;
       input.why = scenario.why;
       input.surprise = scenario.surprise;
       input.picture_time = core::time_from_s(scenario.duration_s / 2);
       scene = scenes::make_scene(scenario.scene, provenance.seed);
-    } else if (provenance.scenario != input.title) {
+    } else if (shown != input.title) {
       throw core::InputError(fmt::format("{}: is a run of '{}', the others are of '{}'; one report shows one scenario",
-                                         run.root.string(), provenance.scenario, input.title));
+                                         run.root.string(), shown, input.title));
     }
+    first = false;
     input.runs.push_back({run.root, core::read_file(run.provenance()), load_evaluations(run)});
   }
-  input.scene = &*scene;
+  input.scene = scene ? &*scene : nullptr;
   if (html_file.has_parent_path()) std::filesystem::create_directories(html_file.parent_path());
   reports::write_report(html_file, input, console.progress("report"));
 }
