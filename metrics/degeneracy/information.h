@@ -1,16 +1,17 @@
 /// How much a sweep's residuals say of the pose, and of the two poses at its begin and end.
 ///
-/// One perturbation for all, whatever a method's own parameters are: the sweep as a whole is moved from the left, in the
-/// frame c (axes of the body at mid-sweep, origin in the LiDAR then): T(t) <- T_c Exp(xi) T_c^-1 T(t), xi = (rho, phi).
+/// One perturbation for all, whatever a method's own parameters are: the sweep as a whole is moved from the left, in
+/// the frame c (axes of the body at mid-sweep, origin in the LiDAR then): T(t) <- T_c Exp(xi) T_c^-1 T(t), xi = (rho,
+/// phi).
 ///   6-DOF    xi is the same over the sweep
 ///   12-DOF   xi(t) = (1 - a) xi_begin + a xi_end, a = phase in the sweep: J12 = [(1 - a) J, a J]
 /// Since xi acts in a fixed frame, what a surface leaves free at every instant is free in the 12-DOF block too, with
 /// motion in the sweep as without.
 ///
 /// Scaling: phi is counted in metres at the sweep's mean range r (columns of rotation divided by r), and the sum over
-/// residuals is divided by sum w |dr/drho|^2, the trace of the translation block: N for point-to-plane rows of weight 1.
-/// Eigenvalues are therefore per residual, between 0 and about 1, and depend neither on the number of points, nor on the
-/// weights' unit, nor on metres or millimetres.
+/// residuals is divided by sum w |dr/drho|^2, the trace of the translation block: N for point-to-plane rows of
+/// weight 1. Eigenvalues are therefore per residual, between 0 and about 1, and depend neither on the number of points,
+/// nor on the weights' unit, nor on metres or millimetres.
 #pragma once
 
 #include <Eigen/Core>

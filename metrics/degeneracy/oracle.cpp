@@ -91,7 +91,9 @@ OracleSweep oracle_sweep(const LidarSweep& sweep, const GroundTruth& truth, std:
 
   const SE3& T_body_lidar = truth.rig.lidars[lidar].T_body_lidar;
   const Time middle = labels.begin + (labels.end - labels.begin) / 2;
-  result.T_world_c = truth.motion->pose(middle) * Eigen::Translation3d(T_body_lidar.translation());
+  const SE3 T_world_body = truth.motion->pose(middle);
+  result.p_world_body = T_world_body.translation();
+  result.T_world_c = T_world_body * Eigen::Translation3d(T_body_lidar.translation());
   const double reach_m = 1.5 * truth.rig.lidars[lidar].max_range_m + 10;
   const SweepTracer traced = tracer.sweep(labels.begin, labels.end, result.T_world_c.translation(), reach_m);
   const Rays rays = beams_to(sweep, labels, chosen, *truth.motion, T_body_lidar, traced.base());

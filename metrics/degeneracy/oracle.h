@@ -24,7 +24,7 @@
 
 namespace tarmac::metrics {
 
-inline constexpr double kOracleDegenerateBelow = 1e-3;      ///< smallest eigenvalue, 6-DOF
+inline constexpr double kOracleDegenerateBelow = 1e-3;       ///< smallest eigenvalue, 6-DOF
 inline constexpr double kOracleShearDegenerateBelow = 5e-5;  ///< smallest eigenvalue, difference's Schur complement
 
 /// One beam's end on a surface, in the world.
@@ -38,14 +38,15 @@ struct SurfacePoint {
 SweepInformation exact_information(std::span<const SurfacePoint> points, const core::SE3& T_world_c);
 
 struct OracleSweep {
-  std::int64_t index = 0;                   ///< of the recording's sweep
-  core::Time begin, end;                    ///< true
+  std::int64_t index = 0;  ///< of the recording's sweep
+  core::Time begin, end;   ///< true
   core::SE3 T_world_c = core::SE3::Identity();
-  double mean_range_m = 0;                  ///< of the static returns
-  std::size_t static_returns = 0;           ///< of the recording
-  std::size_t points = 0;                   ///< that were asked for a normal
-  std::size_t disagreeing = 0;              ///< of these: the traced beam met another object (an edge); left out
-  std::optional<BlockAnalysis> blocks;      ///< empty: truth does not cover the sweep, or too few returns
+  Eigen::Vector3d p_world_body = Eigen::Vector3d::Zero();  ///< the body's origin at mid-sweep
+  double mean_range_m = 0;                                 ///< of the static returns
+  std::size_t static_returns = 0;                          ///< of the recording
+  std::size_t points = 0;                                  ///< that were asked for a normal
+  std::size_t disagreeing = 0;          ///< of these: the traced beam met another object (an edge); left out
+  std::optional<BlockAnalysis> blocks;  ///< empty: truth does not cover the sweep, or too few returns
 
   /// The smallest eigenvalues that decide; empty where the blocks are.
   std::optional<double> lambda_pose() const;

@@ -18,7 +18,7 @@ constexpr double kZero = 1e-6;  // what counts as nothing where nothing is deriv
 
 bool has_derived_value(const MetricEntry& metric) {
   const std::string family = metric.family, name = metric.name;
-  return family != "cost" && family != "effort" && name != "ate_none_rmse_m";
+  return family != "cost" && family != "effort" && family != "degeneracy" && name != "ate_none_rmse_m";
 }
 
 /// Quantiles come from a histogram whose bins are 0.05 % wide; the rest is exact but for the float32 of points (1e-7)
