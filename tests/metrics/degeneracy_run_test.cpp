@@ -13,7 +13,7 @@ using namespace core;
 
 constexpr int kSweeps = 30, kOut = 10, kBack = 22;  ///< sweeps [kOut, kBack) see a plane alone
 
-struct Run {
+struct OutAndBack {
   Estimate estimate;
   Oracle oracle;
   std::vector<SweepDiagnostics> surface_rows;  ///< point-to-plane
@@ -35,9 +35,9 @@ struct Run {
   }
 };
 
-const Run& the_run() {
-  static const Run run = [] {
-    Run r;
+const OutAndBack& the_run() {
+  static const OutAndBack run = [] {
+    OutAndBack r;
     r.rig.lidars.emplace_back();
     Vector6 xi;
     xi << 5, 0, 0, 0, 0, 0.3;
@@ -130,7 +130,7 @@ TEST(DegeneracyRows, HaveAReasonWhereTheyHaveNoValue) {
 
 TEST(DegeneracyRows, OfARecordingWithoutTruthKeepTheMethodsOwnSide) {
   // Ranges come from the recording then: give it one point at the sweeps' usual distance.
-  const Run& run = the_run();
+  const OutAndBack& run = the_run();
   SweepSource source{static_cast<std::size_t>(kSweeps), {}, run.rig, 0};
   source.sweep = [](std::size_t i) {
     LidarSweep sweep;
@@ -187,7 +187,7 @@ TEST(DegeneracySeries, ShowClassesAndFreeDirectionsOverTime) {
 }
 
 TEST(DegeneracyRows, AreTheSameAtAnyNumberOfThreads) {
-  const Run& run = the_run();
+  const OutAndBack& run = the_run();
   const DiagnosticsSource diagnostics = diagnostics_of(run.axis_rows);
   const SweepSource source{static_cast<std::size_t>(kSweeps), {}, run.rig, 0};
   const DegeneracyInput input{run.estimate, &diagnostics, source, &run.oracle, Time{}};
