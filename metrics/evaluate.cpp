@@ -14,6 +14,8 @@
 
 #include "core/error.h"
 #include "metrics/cost.h"
+#include "metrics/degeneracy/degeneracy.h"
+#include "metrics/drift.h"
 #include "metrics/point_error.h"
 #include "metrics/trajectory_error.h"
 
@@ -145,6 +147,26 @@ void add_motion(const EvaluationInput& input, Time t_zero, std::vector<Series>& 
   series.push_back(std::move(yaw_rate));
 }
 
+/// Deskew error where it is hardest: in the sweeps in whose middle the vehicle brakes.
+void add_braking_row(const EvaluationInput& input, const std::vector<SweepErrors>& sweeps, RowSet& rows) {
+  constexpr double kHardM_s2 = 2.5;
+  SquaredSum braking;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < sweeps.size(); ++i) {
+    const PointLabels& labels = (*input.labels)[i];
+    const Time middle = labels.begin + (labels.end - labels.begin) / 2;
+    if (!sweeps[i].scored || !input.truth->motion->covers(middle)) continue;
+    const Kinematics k = input.truth->motion->at(middle);
+    if (k.a_world.dot(k.T_world_body.linear().col(0)) >= -kHardM_s2) continue;
+    braking.add(sweeps[i].of[static_cast<std::size_t>(PointFamily::deskew)]);
+    ++count;
+  }
+  if (braking.n == 0)
+    rows.missing("deskew_error_braking_rms_m", fmt::format("no sweep brakes harder than {} m/s2", kHardM_s2));
+  else
+    rows.put("deskew_error_braking_rms_m", braking.rms(), fmt::format("{} sweeps", count));
+}
+
 void gather_map(std::vector<SweepErrors>& sweeps, MapSample& map) {
   for (const SweepErrors& sweep : sweeps) {
     map.p_world_m.insert(map.p_world_m.end(), sweep.map.p_world_m.begin(), sweep.map.p_world_m.end());
@@ -160,13 +182,17 @@ Time time_zero(const EvaluationInput& input) {
 }
 
 /// What the run itself says, truth or no truth.
-void add_run_figures(const EvaluationInput& input, Time t_zero, RowSet& rows, std::vector<Series>& series) {
+void add_run_figures(const EvaluationInput& input, const EvaluateSettings& settings, Time t_zero, RowSet& rows,
+                     Evaluation& evaluation) {
+  std::vector<Series>& series = evaluation.series;
   std::vector<SweepEffort> effort;
   if (input.diagnostics) effort = effort_of(*input.diagnostics);
   const std::vector<SweepEffort>* known = input.diagnostics ? &effort : nullptr;
   add_cost_rows(input.timing, input.estimate, rows);
   add_effort_rows(known, rows);
   add_cost_series(input.timing, known, input.estimate, t_zero, series);
+  add_degeneracy({input.estimate, input.diagnostics, input.sweeps, input.oracle, t_zero}, {.threads = settings.threads},
+                 rows, series, evaluation.degeneracy_csv);
 }
 
 void keep_rows(const RowSet& rows, Evaluation& evaluation) {
@@ -188,15 +214,18 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
   if (headline) {
     evaluation.coverage = coverage;
     if (!input.labels->empty()) add_motion(input, t_zero, evaluation.series);
-    add_run_figures(input, t_zero, rows, evaluation.series);
+    add_run_figures(input, settings, t_zero, rows, evaluation);
   }
   if (!subject.pairs.empty()) {
     add_trajectory_rows(subject.pairs, {.gravity_aligned = input.estimate.gravity_aligned}, rows);
     PointErrors points = score_points(input, settings, subject, headline ? settings.map_points : 0);
     add_point_rows(points.sweeps, points.histograms, rows);
+    add_drift_rows(subject.pairs, rows);
+    add_braking_row(input, points.sweeps, rows);
     if (headline) {
       add_paths(input, subject.pairs, evaluation.series);
       add_trajectory_series(subject.pairs, t_zero, evaluation.series);
+      add_drift_series(subject.pairs, t_zero, evaluation.series);
       add_point_series(points.sweeps, points.histograms, t_zero, evaluation.series);
       gather_map(points.sweeps, evaluation.map);
     }
@@ -208,7 +237,7 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
 }
 
 /// A recording from outside: what the run says of itself, and the path as estimated.
-void evaluate_alone(const EvaluationInput& input, Evaluation& evaluation) {
+void evaluate_alone(const EvaluationInput& input, const EvaluateSettings& settings, Evaluation& evaluation) {
   const Time t_zero = time_zero(input);
   RowSet rows(input.estimate.has_causal ? "causal" : "final");
   Series path{"path_estimate", "x [m]", "y [m]", {}, {}, {}, {}};
@@ -218,7 +247,7 @@ void evaluate_alone(const EvaluationInput& input, Evaluation& evaluation) {
     path.y.push_back(sweep.T_map_body.translation().y());
   }
   put_coverage(path.x.size(), input.sweeps.count, rows, evaluation.coverage);
-  add_run_figures(input, t_zero, rows, evaluation.series);
+  add_run_figures(input, settings, t_zero, rows, evaluation);
   evaluation.series.push_back(std::move(path));
   rows.all_missing("the recording has no truth");
   keep_rows(rows, evaluation);
@@ -235,7 +264,7 @@ Evaluation evaluate(const EvaluationInput& input, const EvaluateSettings& settin
   if (input.estimate.status != RunStatus::ok) evaluation.status = name_of(input.estimate.status);
   evaluation.message = input.estimate.message;
   if (!input.truth) {
-    evaluate_alone(input, evaluation);
+    evaluate_alone(input, settings, evaluation);
     return evaluation;
   }
   if (input.estimate.has_causal || !input.estimate.has_final)

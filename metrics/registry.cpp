@@ -9,7 +9,10 @@ constexpr const char* kNone = "none needed";
 constexpr const char* kZhang = "Zhang and Scaramuzza 2018, A Tutorial on Quantitative Trajectory Evaluation";
 constexpr const char* kSturm = "Sturm et al. 2012, A Benchmark for the Evaluation of RGB-D SLAM Systems";
 constexpr const char* kUmeyama = "Umeyama 1991, Least-Squares Estimation of Transformation Parameters";
+constexpr const char* kKitti =
+    "Geiger et al. 2012, Are we ready for Autonomous Driving? The KITTI Vision Benchmark Suite";
 constexpr const char* kOwn = "metrics/README.md";
+constexpr const char* kDegeneracy = "metrics/README.md; Zhang, Kaess and Singh 2016; Wilson 1927";
 
 constexpr MetricEntry kMetrics[] = {
     {"coverage_percent", "%", false, kNone,
@@ -64,6 +67,20 @@ constexpr MetricEntry kMetrics[] = {
     {"path_length_m", "m", false, kNone, "Length of the true path between the first and the last scored pose.", kOwn,
      "trajectory"},
 
+    {"kitti_trans_percent", "%", true, kNone,
+     "KITTI's translation error: over segments of 100 to 800 m, error of the motion over the segment's length; mean. "
+     "n/a below 200 m of path; the count of segments is beside it.",
+     kKitti, "drift"},
+    {"kitti_rot_deg_per_100m", "deg/100m", true, kNone, "KITTI's rotation error over the same segments; mean.", kKitti,
+     "drift"},
+    {"drift_50m_along_rms_m", "m", true, kNone,
+     "Error of the motion over 50 m of true path, seen at its end along the true heading; RMS.", kOwn, "drift"},
+    {"drift_50m_cross_rms_m", "m", true, kNone, "The same, across the true heading.", kOwn, "drift"},
+    {"drift_50m_height_rms_m", "m", true, kNone, "The same, in height.", kOwn, "drift"},
+    {"drift_50m_yaw_rms_deg", "deg", true, kNone, "Rotation error over 50 m of true path, about the vertical; RMS.",
+     kOwn, "drift"},
+    {"drift_50m_tilt_rms_deg", "deg", true, kNone, "The same, roll and pitch together.", kOwn, "drift"},
+
     {"point_error_rms_m", "m", true, kFirst,
      "How far from its true place the estimate puts each static point, at the point's own firing time; RMS.", kOwn,
      "points"},
@@ -77,9 +94,104 @@ constexpr MetricEntry kMetrics[] = {
      "How far a sweep is bent: distance of its static points from their true places after the sweep's best rigid "
      "motion; RMS over all points. Large when motion during the sweep is not undone.",
      kOwn, "points"},
+    {"deskew_error_braking_rms_m", "m", true, "each sweep's own best rigid motion",
+     "The same over the sweeps in whose middle the vehicle truly brakes harder than 2.5 m/s2.", kOwn, "points"},
     {"sweep_shear_rms_m", "m", true, kNone,
      "Error of the motion from a sweep's first to its last firing, translation part; RMS over sweeps.", kOwn, "points"},
     {"sweep_shear_rot_rms_deg", "deg", true, kNone, "The same, rotation part.", kOwn, "points"},
+
+    {"oracle_degenerate_percent", "%", false, kNone,
+     "Share of sweeps whose exact geometry leaves a direction of the pose free: smallest scaled eigenvalue of the "
+     "6-DOF block of exact normals below 1e-3.",
+     kDegeneracy, "degeneracy"},
+    {"oracle_degenerate_12dof_percent", "%", false, kNone,
+     "Share of sweeps whose exact geometry leaves the motion inside the sweep free: smallest eigenvalue of the "
+     "difference's Schur complement below 5e-5.",
+     kDegeneracy, "degeneracy"},
+    {"solve_lambda_min_6dof_median", "1", false, kNone,
+     "Median over sweeps of the smallest scaled eigenvalue of the 6-DOF block of the residuals that the method solved "
+     "with.",
+     kDegeneracy, "degeneracy"},
+    {"solve_lambda_min_12dof_difference_median", "1", false, kNone,
+     "The same of the motion inside the sweep: the difference's Schur complement in the 12-DOF block.", kDegeneracy,
+     "degeneracy"},
+    {"solve_condition_6dof_median", "1", true, kNone, "Median over sweeps of the same 6-DOF block's condition number.",
+     kDegeneracy, "degeneracy"},
+    {"solve_condition_12dof_median", "1", true, kNone,
+     "Median over sweeps of the same 12-DOF block's condition number.", kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_precision", "1", false, kNone,
+     "Of the sweeps that the smallest 6-DOF eigenvalue by the residuals that the method solved with flags, the share "
+     "that the oracle calls degenerate; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_recall", "1", false, kNone,
+     "Of the sweeps that the oracle calls degenerate, the share that the same eigenvalue flags; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_f1", "1", false, kNone, "Harmonic mean of the two.", kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_auc", "1", false, kNone,
+     "Probability that the same eigenvalue is smaller on a degenerate sweep than on another: what any threshold could "
+     "reach; 0.5 knows nothing.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_event_precision", "1", false, kNone,
+     "Precision over stretches of at least 5 flagged sweeps.", kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_event_recall", "1", false, kNone, "Recall over stretches of at least 5 degenerate sweeps.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_lead_time_s", "s", false, kNone,
+     "From the first flag to the oracle's onset, median over events: above 0 the method warns first.", kDegeneracy,
+     "degeneracy"},
+    {"degeneracy_solve_12dof_precision", "1", false, kNone,
+     "Of the sweeps that the smallest eigenvalue of the motion inside the sweep by the residuals that the method "
+     "solved with flags, the share that the oracle calls degenerate; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_12dof_recall", "1", false, kNone,
+     "Of the sweeps that the oracle calls degenerate, the share that the same eigenvalue flags; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_12dof_f1", "1", false, kNone, "Harmonic mean of the two.", kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_12dof_auc", "1", false, kNone,
+     "Probability that the same eigenvalue is smaller on a degenerate sweep than on another: what any threshold could "
+     "reach; 0.5 knows nothing.",
+     kDegeneracy, "degeneracy"},
+    {"surface_lambda_min_6dof_median", "1", false, kNone,
+     "Median over sweeps of the smallest scaled eigenvalue of the 6-DOF block of the method's point-to-surface "
+     "residuals.",
+     kDegeneracy, "degeneracy"},
+    {"surface_lambda_min_12dof_difference_median", "1", false, kNone,
+     "The same of the motion inside the sweep: the difference's Schur complement in the 12-DOF block.", kDegeneracy,
+     "degeneracy"},
+    {"surface_condition_6dof_median", "1", true, kNone,
+     "Median over sweeps of the same 6-DOF block's condition number.", kDegeneracy, "degeneracy"},
+    {"surface_condition_12dof_median", "1", true, kNone,
+     "Median over sweeps of the same 12-DOF block's condition number.", kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_precision", "1", false, kNone,
+     "Of the sweeps that the smallest 6-DOF eigenvalue by the method's point-to-surface residuals flags, the share "
+     "that the oracle calls degenerate; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_recall", "1", false, kNone,
+     "Of the sweeps that the oracle calls degenerate, the share that the same eigenvalue flags; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_f1", "1", false, kNone, "Harmonic mean of the two.", kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_auc", "1", false, kNone,
+     "Probability that the same eigenvalue is smaller on a degenerate sweep than on another: what any threshold could "
+     "reach; 0.5 knows nothing.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_event_precision", "1", false, kNone,
+     "Precision over stretches of at least 5 flagged sweeps.", kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_event_recall", "1", false, kNone,
+     "Recall over stretches of at least 5 degenerate sweeps.", kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_lead_time_s", "s", false, kNone,
+     "From the first flag to the oracle's onset, median over events: above 0 the method warns first.", kDegeneracy,
+     "degeneracy"},
+    {"degeneracy_surface_12dof_precision", "1", false, kNone,
+     "Of the sweeps that the smallest eigenvalue of the motion inside the sweep by the method's point-to-surface "
+     "residuals flags, the share that the oracle calls degenerate; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_12dof_recall", "1", false, kNone,
+     "Of the sweeps that the oracle calls degenerate, the share that the same eigenvalue flags; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_12dof_f1", "1", false, kNone, "Harmonic mean of the two.", kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_12dof_auc", "1", false, kNone,
+     "Probability that the same eigenvalue is smaller on a degenerate sweep than on another: what any threshold could "
+     "reach; 0.5 knows nothing.",
+     kDegeneracy, "degeneracy"},
 
     {"iterations_mean", "1", true, kNone, "Mean number of the method's iterations a sweep.", kOwn, "effort"},
     {"sweep_time_p50_ms", "ms", true, kNone, "Median wall time the method took for a sweep.", kOwn, "cost"},
