@@ -143,6 +143,7 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   RecordingWriter recording(recording_folder, setup.sheet);
   truth::write_truth(truth_folder, input.resolved_scenario, input.resolved_motion, *input.motion, setup.truth,
                      setup.log);
+  std::filesystem::remove(truth_folder / "imu0_errors.json");  // of an earlier run with an IMU
   if (options.has_imu) write_file(truth_folder / "imu0_errors.json", errors_as_json(imu.errors));
   ChunkWriter labels(truth_folder / "lidar0_labels.chunks");
   const auto after_sweep = [&](const PipelineTotals& so_far) {

@@ -36,13 +36,13 @@ ImuErrorOptions only(bool white_noise, bool bias_instability, bool bias_walk) {
   return options;
 }
 
-/// One hour of nothing but errors: running sums of each axis.
+/// One hour of nothing but errors. Draws are named after the device: no two devices share them.
 struct StillHour {
   std::vector<ImuSample> samples = std::vector<ImuSample>(hour);
   RealisedImuErrors errors;
   StillHour(const ImuModel& model, const ImuErrorOptions& options, int run, std::size_t bias_every = hour)
-      : errors(add_imu_errors(samples, model, options, {rate_hz, 0}, static_cast<std::uint64_t>(run), "imu0",
-                              bias_every)) {}
+      : errors(add_imu_errors(samples, model, options, {rate_hz, 0}, static_cast<std::uint64_t>(run),
+                              std::string(model.name), bias_every)) {}
   std::vector<double> sums(Triad triad, int axis) const {
     std::vector<double> values(hour);
     for (std::size_t k = 0; k < hour; ++k)
