@@ -197,6 +197,23 @@ VoxelMap::Neighbour VoxelMap::nearest(const Eigen::Vector3d& q, double below_m2,
   return best;
 }
 
+void VoxelMap::gather(const Eigen::Vector3d& q, double radius_m, std::vector<Eigen::Vector3d>& points) const {
+  if (!has_voxel(q, voxel_size_m_)) return;
+  const Voxel own = voxel_of(q, voxel_size_m_);
+  for (std::int32_t dx = -1; dx <= 1; ++dx) {
+    for (std::int32_t dy = -1; dy <= 1; ++dy) {
+      for (std::int32_t dz = -1; dz <= 1; ++dz) {
+        const std::int32_t b = find({own.x + dx, own.y + dy, own.z + dz});
+        if (b == kNone) continue;
+        for (int k = 0; k < counts_[static_cast<std::size_t>(b)]; ++k) {
+          const Eigen::Vector3d p = point(b, k);
+          if ((p - q).squaredNorm() < radius_m * radius_m) points.push_back(p);
+        }
+      }
+    }
+  }
+}
+
 std::vector<std::vector<Eigen::Vector3d>> VoxelMap::voxels() const {
   std::vector<std::vector<Eigen::Vector3d>> all;
   for (const Entry& entry : table_) {

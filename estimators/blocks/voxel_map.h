@@ -36,6 +36,10 @@ class VoxelMap {
   /// beyond those voxels stays unseen. `hint` may be a point of this map that is likely near: it only saves time.
   Neighbour nearest(const Eigen::Vector3d& q, double below_m2, const Eigen::Vector3d* hint = nullptr) const;
 
+  /// Appends to `points` those of the 27 voxels around q's that lie nearer to q than `radius_m`, in an order that the
+  /// map's history alone decides.
+  void gather(const Eigen::Vector3d& q, double radius_m, std::vector<Eigen::Vector3d>& points) const;
+
   /// The points of every voxel in order of their insertion; voxels in no particular (but deterministic) order.
   std::vector<std::vector<Eigen::Vector3d>> voxels() const;
 
