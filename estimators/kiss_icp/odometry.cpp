@@ -74,7 +74,7 @@ std::vector<KissOdometry::SurfacePoint> KissOdometry::surfaces_at(const SE3& T_m
     for (std::size_t k = range.begin(); k < range.end(); ++k) {
       const Vector3d p_map = T_map_lidar * deskewed_m_[map_sample_[k]];
       near_m.clear();
-      map_.gather(p_map, radius_m, near_m);
+      map_.gather(p_map, radius_m, sweeps_ - kSurfaceAge, near_m);
       planes[k] = fit_plane(near_m, max_thickness_m);
     }
   });
@@ -86,8 +86,9 @@ std::vector<KissOdometry::SurfacePoint> KissOdometry::surfaces_at(const SE3& T_m
 }
 
 void KissOdometry::update_map() {
-  for (const std::uint32_t i : map_sample_) map_.add(T_map_lidar_ * deskewed_m_[i]);
+  for (const std::uint32_t i : map_sample_) map_.add(T_map_lidar_ * deskewed_m_[i], sweeps_);
   map_.remove_far(T_map_lidar_.translation(), options_.max_range_m);
+  ++sweeps_;
 }
 
 }  // namespace tarmac::estimators

@@ -39,8 +39,10 @@ class KissOdometry {
   Step add(const core::LidarSweep& sweep);
   /// The same with both from elsewhere. `T_predicted`: of the LiDAR in the map, at the sweep's last point.
   Step add(const core::LidarSweep& sweep, const SweepMotion& motion, const core::SE3& T_predicted);
-  /// Look for planes in the map, before the sweep's own points join it, at every point that could go into the map.
+  /// Look for planes at every point that could go into the map, in the map as it was kSurfaceAge sweeps ago: what is
+  /// wrong with this sweep was likely wrong with the last few in the same way, and their points would hide it.
   void look_for_surfaces() { surfaces_ = true; }
+  static constexpr std::int32_t kSurfaceAge = 10;
 
   const core::SE3& T_map_lidar() const { return T_map_lidar_; }
   const AdaptiveThreshold& threshold() const { return threshold_; }
@@ -59,6 +61,7 @@ class KissOdometry {
 
   KissIcpOptions options_;
   bool surfaces_ = false;
+  std::int32_t sweeps_ = 0;  ///< until now
   VoxelSampler sampler_;
   Registration registration_;
   VoxelMap map_;
