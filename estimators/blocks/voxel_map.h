@@ -26,8 +26,8 @@ class VoxelMap {
   bool empty() const { return voxel_count_ == 0; }
   std::size_t voxel_count() const { return voxel_count_; }
   /// Adds a point unless its voxel is full or holds one that is too near. Points that are not finite or out of the
-  /// grid's reach are left out. @returns whether it was added
-  bool add(const Eigen::Vector3d& p);
+  /// grid's reach are left out. `birth` is kept with it, for gather(). @returns whether it was added
+  bool add(const Eigen::Vector3d& p, std::int32_t birth = 0);
   /// Drops every voxel whose first point is at `radius_m` or farther from `centre`.
   void remove_far(const Eigen::Vector3d& centre, double radius_m);
 
@@ -51,6 +51,11 @@ class VoxelMap {
     const double* x = block(b);
     return {counts_[static_cast<std::size_t>(b)], x, x + capacity_, x + 2 * capacity_};
   }
+
+  /// Appends to `points` those of the 27 voxels around q's that lie nearer to q than `radius_m` and were born no later
+  /// than `latest_birth`, in an order that the map's history alone decides.
+  void gather(const Eigen::Vector3d& q, double radius_m, std::int32_t latest_birth,
+              std::vector<Eigen::Vector3d>& points) const;
 
   /// The points of every voxel in order of their insertion; voxels in no particular (but deterministic) order.
   std::vector<std::vector<Eigen::Vector3d>> voxels() const;
@@ -82,6 +87,7 @@ class VoxelMap {
   std::vector<Entry> table_;
   std::vector<double> coordinates_;
   std::vector<std::int32_t> counts_;  ///< points of each block
+  std::vector<std::int32_t> births_;  ///< of every point, `capacity_` a block
   std::vector<std::int32_t> free_;    ///< blocks of dropped voxels
 };
 
