@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/vector_loop.h"
+
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -58,6 +60,43 @@ inline void cos_sin_turn(std::uint32_t bits, float& c, float& s) {
 
 constexpr std::size_t kBatchBlocks = 64;  ///< blocks of four draws whose arithmetic is vectorised together
 
+/// Box-Muller over blocks first, first + 1, ... (none of which carries into the counter's upper word), in the order of
+/// their draws. The same bits as Random123's Philox, whose loop over rounds does not vectorise.
+TARMAC_VECTOR_LOOP void normals_of_blocks(std::uint32_t key0, std::uint32_t key1, std::uint32_t counter_low,
+                                          std::uint32_t counter_high, std::uint32_t counter_name, std::size_t blocks,
+                                          float* draws) {
+  std::uint32_t x0[kBatchBlocks], x1[kBatchBlocks], x2[kBatchBlocks], x3[kBatchBlocks];
+  for (std::size_t k = 0; k < blocks; ++k) {
+    std::uint32_t c0 = counter_low + static_cast<std::uint32_t>(k), c1 = counter_high, c2 = 0, c3 = counter_name;
+    std::uint32_t k0 = key0, k1 = key1;
+#pragma GCC unroll 10
+    for (int round = 0; round < 10; ++round) {
+      const std::uint64_t p0 = static_cast<std::uint64_t>(PHILOX_M4x32_0) * c0;
+      const std::uint64_t p1 = static_cast<std::uint64_t>(PHILOX_M4x32_1) * c2;
+      const std::uint32_t next0 = static_cast<std::uint32_t>(p1 >> 32) ^ c1 ^ k0;
+      const std::uint32_t next2 = static_cast<std::uint32_t>(p0 >> 32) ^ c3 ^ k1;
+      c1 = static_cast<std::uint32_t>(p1);
+      c3 = static_cast<std::uint32_t>(p0);
+      c0 = next0;
+      c2 = next2;
+      k0 += PHILOX_W32_0;
+      k1 += PHILOX_W32_1;
+    }
+    x0[k] = c0, x1[k] = c1, x2[k] = c2, x3[k] = c3;
+  }
+  for (std::size_t k = 0; k < blocks; ++k) {
+    const float r0 = std::sqrt(-2.0f * log_unit(unit_float(x0[k])));
+    const float r1 = std::sqrt(-2.0f * log_unit(unit_float(x2[k])));
+    float c0, s0, c1, s1;
+    cos_sin_turn(x1[k], c0, s0);
+    cos_sin_turn(x3[k], c1, s1);
+    draws[4 * k] = r0 * c0;
+    draws[4 * k + 1] = r0 * s0;
+    draws[4 * k + 2] = r1 * c1;
+    draws[4 * k + 3] = r1 * s1;
+  }
+}
+
 }  // namespace
 
 RandomStream::RandomStream(std::uint64_t seed, std::string_view name) {
@@ -98,26 +137,14 @@ void RandomStream::uniforms(std::uint64_t first, std::span<float> out) const {
 
 void RandomStream::normals(std::uint64_t first, std::span<float> out) const {
   // Block k/4 holds draws 4(k/4) .. +3: two Box-Muller pairs. Whole blocks are made and the wanted part copied out.
-  float radius_uniform[2 * kBatchBlocks], draws[4 * kBatchBlocks];
-  std::uint32_t angle_bits[2 * kBatchBlocks];
+  float draws[4 * kBatchBlocks];
   std::size_t done = 0;
   while (done < out.size()) {
     const std::uint64_t first_block = (first + done) / 4, last_block = (first + out.size() - 1) / 4;
-    const std::size_t blocks = std::min<std::uint64_t>(kBatchBlocks, last_block - first_block + 1);
-    for (std::size_t k = 0; k < blocks; ++k) {
-      const auto b = block(key_, name_hash_, first_block + k, 0, kNormals);
-      radius_uniform[2 * k] = unit_float(b[0]);
-      angle_bits[2 * k] = b[1];
-      radius_uniform[2 * k + 1] = unit_float(b[2]);
-      angle_bits[2 * k + 1] = b[3];
-    }
-    for (std::size_t k = 0; k < 2 * blocks; ++k) {
-      const float radius = std::sqrt(-2.0f * log_unit(radius_uniform[k]));
-      float c, s;
-      cos_sin_turn(angle_bits[k], c, s);
-      draws[2 * k] = radius * c;
-      draws[2 * k + 1] = radius * s;
-    }
+    const std::uint64_t before_carry = (std::uint64_t{1} << 32) - (first_block & 0xffffffffu);
+    const std::size_t blocks = std::min<std::uint64_t>({kBatchBlocks, last_block - first_block + 1, before_carry});
+    normals_of_blocks(key_[0], key_[1], static_cast<std::uint32_t>(first_block),
+                      static_cast<std::uint32_t>(first_block >> 32), name_hash_ + kNormals, blocks, draws);
     const std::size_t skip = (first + done) % 4, take = std::min(4 * blocks - skip, out.size() - done);
     std::copy_n(draws + skip, take, out.begin() + static_cast<std::ptrdiff_t>(done));
     done += take;

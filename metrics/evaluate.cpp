@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "metrics/cost.h"
+#include "metrics/degeneracy/degeneracy.h"
 #include "metrics/drift.h"
 #include "metrics/point_error.h"
 #include "metrics/trajectory_error.h"
@@ -181,13 +182,17 @@ Time time_zero(const EvaluationInput& input) {
 }
 
 /// What the run itself says, truth or no truth.
-void add_run_figures(const EvaluationInput& input, Time t_zero, RowSet& rows, std::vector<Series>& series) {
+void add_run_figures(const EvaluationInput& input, const EvaluateSettings& settings, Time t_zero, RowSet& rows,
+                     Evaluation& evaluation) {
+  std::vector<Series>& series = evaluation.series;
   std::vector<SweepEffort> effort;
   if (input.diagnostics) effort = effort_of(*input.diagnostics);
   const std::vector<SweepEffort>* known = input.diagnostics ? &effort : nullptr;
   add_cost_rows(input.timing, input.estimate, rows);
   add_effort_rows(known, rows);
   add_cost_series(input.timing, known, input.estimate, t_zero, series);
+  add_degeneracy({input.estimate, input.diagnostics, input.sweeps, input.oracle, t_zero}, {.threads = settings.threads},
+                 rows, series, evaluation.degeneracy_csv);
 }
 
 void keep_rows(const RowSet& rows, Evaluation& evaluation) {
@@ -209,7 +214,7 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
   if (headline) {
     evaluation.coverage = coverage;
     if (!input.labels->empty()) add_motion(input, t_zero, evaluation.series);
-    add_run_figures(input, t_zero, rows, evaluation.series);
+    add_run_figures(input, settings, t_zero, rows, evaluation);
   }
   if (!subject.pairs.empty()) {
     add_trajectory_rows(subject.pairs, {.gravity_aligned = input.estimate.gravity_aligned}, rows);
@@ -232,7 +237,7 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
 }
 
 /// A recording from outside: what the run says of itself, and the path as estimated.
-void evaluate_alone(const EvaluationInput& input, Evaluation& evaluation) {
+void evaluate_alone(const EvaluationInput& input, const EvaluateSettings& settings, Evaluation& evaluation) {
   const Time t_zero = time_zero(input);
   RowSet rows(input.estimate.has_causal ? "causal" : "final");
   Series path{"path_estimate", "x [m]", "y [m]", {}, {}, {}, {}};
@@ -242,7 +247,7 @@ void evaluate_alone(const EvaluationInput& input, Evaluation& evaluation) {
     path.y.push_back(sweep.T_map_body.translation().y());
   }
   put_coverage(path.x.size(), input.sweeps.count, rows, evaluation.coverage);
-  add_run_figures(input, t_zero, rows, evaluation.series);
+  add_run_figures(input, settings, t_zero, rows, evaluation);
   evaluation.series.push_back(std::move(path));
   rows.all_missing("the recording has no truth");
   keep_rows(rows, evaluation);
@@ -259,7 +264,7 @@ Evaluation evaluate(const EvaluationInput& input, const EvaluateSettings& settin
   if (input.estimate.status != RunStatus::ok) evaluation.status = name_of(input.estimate.status);
   evaluation.message = input.estimate.message;
   if (!input.truth) {
-    evaluate_alone(input, evaluation);
+    evaluate_alone(input, settings, evaluation);
     return evaluation;
   }
   if (input.estimate.has_causal || !input.estimate.has_final)

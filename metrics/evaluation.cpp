@@ -22,6 +22,7 @@ constexpr int kFormat = 1;
 constexpr const char* kMain = "evaluation.json";
 constexpr const char* kCost = "cost.json";
 constexpr const char* kMap = "map_sample.bin";
+constexpr const char* kDegeneracy = "degeneracy.csv";
 
 bool is_cost(const Row& row) {
   const MetricEntry* entry = find_metric(row.metric);
@@ -176,6 +177,10 @@ void save_evaluation(const std::filesystem::path& folder, const Evaluation& eval
     std::filesystem::remove(folder / kMap);
   else
     save_map(folder / kMap, evaluation.map);
+  if (evaluation.degeneracy_csv.empty())
+    std::filesystem::remove(folder / kDegeneracy);
+  else
+    write_file(folder / kDegeneracy, evaluation.degeneracy_csv);
   write_file(folder / kCost, text(part(evaluation, true)));
   write_file(folder / kMain, text(part(evaluation, false)));
 }

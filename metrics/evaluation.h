@@ -43,7 +43,8 @@ struct Evaluation {
   double coverage = 0;  ///< share of sweeps that are scored
   std::vector<Row> rows;
   std::vector<Series> series;
-  MapSample map;  ///< stored apart, as map_sample.bin
+  MapSample map;               ///< stored apart, as map_sample.bin
+  std::string degeneracy_csv;  ///< every eigenvalue a sweep; stored apart, as degeneracy.csv, and not read back
 
   /// nullptr when there is none of that name.
   const Row* row(const std::string& metric, const std::string& estimate = "causal") const;
@@ -51,7 +52,8 @@ struct Evaluation {
 };
 
 /// evaluation.json; cost.json beside it with what differs from run to run (times, memory), so that equal runs give
-/// equal bytes in evaluation.json; and map_sample.bin when there is a map. Numbers come back exactly; NaN is null.
+/// equal bytes in evaluation.json; map_sample.bin when there is a map, degeneracy.csv when
+/// there is one. Numbers come back exactly; NaN is null.
 void save_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation);
 /// Throws InputError when there is no evaluation.json, DamagedFile when a file is not whole.
 Evaluation load_evaluation(const std::filesystem::path& folder);

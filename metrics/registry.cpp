@@ -12,6 +12,7 @@ constexpr const char* kUmeyama = "Umeyama 1991, Least-Squares Estimation of Tran
 constexpr const char* kKitti =
     "Geiger et al. 2012, Are we ready for Autonomous Driving? The KITTI Vision Benchmark Suite";
 constexpr const char* kOwn = "metrics/README.md";
+constexpr const char* kDegeneracy = "metrics/README.md; Zhang, Kaess and Singh 2016; Wilson 1927";
 
 constexpr MetricEntry kMetrics[] = {
     {"coverage_percent", "%", false, kNone,
@@ -98,6 +99,99 @@ constexpr MetricEntry kMetrics[] = {
     {"sweep_shear_rms_m", "m", true, kNone,
      "Error of the motion from a sweep's first to its last firing, translation part; RMS over sweeps.", kOwn, "points"},
     {"sweep_shear_rot_rms_deg", "deg", true, kNone, "The same, rotation part.", kOwn, "points"},
+
+    {"oracle_degenerate_percent", "%", false, kNone,
+     "Share of sweeps whose exact geometry leaves a direction of the pose free: smallest scaled eigenvalue of the "
+     "6-DOF block of exact normals below 1e-3.",
+     kDegeneracy, "degeneracy"},
+    {"oracle_degenerate_12dof_percent", "%", false, kNone,
+     "Share of sweeps whose exact geometry leaves the motion inside the sweep free: smallest eigenvalue of the "
+     "difference's Schur complement below 5e-5.",
+     kDegeneracy, "degeneracy"},
+    {"solve_lambda_min_6dof_median", "1", false, kNone,
+     "Median over sweeps of the smallest scaled eigenvalue of the 6-DOF block of the residuals that the method solved "
+     "with.",
+     kDegeneracy, "degeneracy"},
+    {"solve_lambda_min_12dof_difference_median", "1", false, kNone,
+     "The same of the motion inside the sweep: the difference's Schur complement in the 12-DOF block.", kDegeneracy,
+     "degeneracy"},
+    {"solve_condition_6dof_median", "1", true, kNone, "Median over sweeps of the same 6-DOF block's condition number.",
+     kDegeneracy, "degeneracy"},
+    {"solve_condition_12dof_median", "1", true, kNone,
+     "Median over sweeps of the same 12-DOF block's condition number.", kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_precision", "1", false, kNone,
+     "Of the sweeps that the smallest 6-DOF eigenvalue by the residuals that the method solved with flags, the share "
+     "that the oracle calls degenerate; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_recall", "1", false, kNone,
+     "Of the sweeps that the oracle calls degenerate, the share that the same eigenvalue flags; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_f1", "1", false, kNone, "Harmonic mean of the two.", kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_auc", "1", false, kNone,
+     "Probability that the same eigenvalue is smaller on a degenerate sweep than on another: what any threshold could "
+     "reach; 0.5 knows nothing.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_event_precision", "1", false, kNone,
+     "Precision over stretches of at least 5 flagged sweeps.", kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_event_recall", "1", false, kNone, "Recall over stretches of at least 5 degenerate sweeps.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_6dof_lead_time_s", "s", false, kNone,
+     "From the first flag to the oracle's onset, median over events: above 0 the method warns first.", kDegeneracy,
+     "degeneracy"},
+    {"degeneracy_solve_12dof_precision", "1", false, kNone,
+     "Of the sweeps that the smallest eigenvalue of the motion inside the sweep by the residuals that the method "
+     "solved with flags, the share that the oracle calls degenerate; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_12dof_recall", "1", false, kNone,
+     "Of the sweeps that the oracle calls degenerate, the share that the same eigenvalue flags; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_12dof_f1", "1", false, kNone, "Harmonic mean of the two.", kDegeneracy, "degeneracy"},
+    {"degeneracy_solve_12dof_auc", "1", false, kNone,
+     "Probability that the same eigenvalue is smaller on a degenerate sweep than on another: what any threshold could "
+     "reach; 0.5 knows nothing.",
+     kDegeneracy, "degeneracy"},
+    {"surface_lambda_min_6dof_median", "1", false, kNone,
+     "Median over sweeps of the smallest scaled eigenvalue of the 6-DOF block of the method's point-to-surface "
+     "residuals.",
+     kDegeneracy, "degeneracy"},
+    {"surface_lambda_min_12dof_difference_median", "1", false, kNone,
+     "The same of the motion inside the sweep: the difference's Schur complement in the 12-DOF block.", kDegeneracy,
+     "degeneracy"},
+    {"surface_condition_6dof_median", "1", true, kNone,
+     "Median over sweeps of the same 6-DOF block's condition number.", kDegeneracy, "degeneracy"},
+    {"surface_condition_12dof_median", "1", true, kNone,
+     "Median over sweeps of the same 12-DOF block's condition number.", kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_precision", "1", false, kNone,
+     "Of the sweeps that the smallest 6-DOF eigenvalue by the method's point-to-surface residuals flags, the share "
+     "that the oracle calls degenerate; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_recall", "1", false, kNone,
+     "Of the sweeps that the oracle calls degenerate, the share that the same eigenvalue flags; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_f1", "1", false, kNone, "Harmonic mean of the two.", kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_auc", "1", false, kNone,
+     "Probability that the same eigenvalue is smaller on a degenerate sweep than on another: what any threshold could "
+     "reach; 0.5 knows nothing.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_event_precision", "1", false, kNone,
+     "Precision over stretches of at least 5 flagged sweeps.", kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_event_recall", "1", false, kNone,
+     "Recall over stretches of at least 5 degenerate sweeps.", kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_6dof_lead_time_s", "s", false, kNone,
+     "From the first flag to the oracle's onset, median over events: above 0 the method warns first.", kDegeneracy,
+     "degeneracy"},
+    {"degeneracy_surface_12dof_precision", "1", false, kNone,
+     "Of the sweeps that the smallest eigenvalue of the motion inside the sweep by the method's point-to-surface "
+     "residuals flags, the share that the oracle calls degenerate; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_12dof_recall", "1", false, kNone,
+     "Of the sweeps that the oracle calls degenerate, the share that the same eigenvalue flags; 95 % Wilson interval.",
+     kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_12dof_f1", "1", false, kNone, "Harmonic mean of the two.", kDegeneracy, "degeneracy"},
+    {"degeneracy_surface_12dof_auc", "1", false, kNone,
+     "Probability that the same eigenvalue is smaller on a degenerate sweep than on another: what any threshold could "
+     "reach; 0.5 knows nothing.",
+     kDegeneracy, "degeneracy"},
 
     {"iterations_mean", "1", true, kNone, "Mean number of the method's iterations a sweep.", kOwn, "effort"},
     {"sweep_time_p50_ms", "ms", true, kNone, "Median wall time the method took for a sweep.", kOwn, "cost"},
