@@ -50,9 +50,14 @@ bool adjacent(const Voxel& a, const Voxel& b) {
 
 }  // namespace
 
-VoxelMap::VoxelMap(double voxel_size_m, int max_points)
+VoxelMap::VoxelMap(double voxel_size_m, int max_points) : VoxelMap(voxel_size_m, max_points, 0) {
+  // Squared as it stands: rounding the root and squaring it again would move the bound.
+  min_distance2_m2_ = voxel_size_m * voxel_size_m / max_points;
+}
+
+VoxelMap::VoxelMap(double voxel_size_m, int max_points, double min_distance_m)
     : voxel_size_m_(voxel_size_m),
-      min_distance2_m2_(voxel_size_m * voxel_size_m / max_points),
+      min_distance2_m2_(min_distance_m * min_distance_m),
       max_points_(max_points),
       capacity_((static_cast<std::size_t>(max_points) + 1) / 2 * 2),
       stride_(3 * capacity_),

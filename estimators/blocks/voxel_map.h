@@ -10,15 +10,19 @@
 
 namespace tarmac::estimators {
 
-/// Voxel -> up to `max_points` points, none nearer than voxel_size / sqrt(max_points) to another of the same voxel.
+/// Voxel -> up to `max_points` points, none nearer than a minimum distance to another of the same voxel.
 ///
 /// A flat table of 16-byte entries leads from a voxel to its block; a block is a fixed run of coordinates, x, y and z
 /// apart, so that a search reads whole cache lines and the compiler may vectorise it.
 /// Source: the local map of KISS-ICP, Vizzo et al., RA-L 8(2) 2023, section III-C.
 class VoxelMap {
  public:
+  /// The minimum distance is voxel_size / sqrt(max_points), KISS-ICP's.
   VoxelMap(double voxel_size_m, int max_points);
+  VoxelMap(double voxel_size_m, int max_points, double min_distance_m);
 
+  double voxel_size_m() const { return voxel_size_m_; }
+  int max_points() const { return max_points_; }
   bool empty() const { return voxel_count_ == 0; }
   std::size_t voxel_count() const { return voxel_count_; }
   /// Adds a point unless its voxel is full or holds one that is too near. Points that are not finite or out of the
@@ -35,6 +39,18 @@ class VoxelMap {
   /// The nearest point among the 27 voxels around q's, if it is nearer than sqrt(below_m2): exact, but a nearer one
   /// beyond those voxels stays unseen. `hint` may be a point of this map that is likely near: it only saves time.
   Neighbour nearest(const Eigen::Vector3d& q, double below_m2, const Eigen::Vector3d* hint = nullptr) const;
+
+  /// The points of one voxel, coordinates apart; count 0 where there is no such voxel. Valid until the map changes.
+  struct Points {
+    int count = 0;
+    const double *x_m = nullptr, *y_m = nullptr, *z_m = nullptr;
+  };
+  Points points_in(const Voxel& voxel) const {
+    const std::int32_t b = find(voxel);
+    if (b == kNone) return {};
+    const double* x = block(b);
+    return {counts_[static_cast<std::size_t>(b)], x, x + capacity_, x + 2 * capacity_};
+  }
 
   /// The points of every voxel in order of their insertion; voxels in no particular (but deterministic) order.
   std::vector<std::vector<Eigen::Vector3d>> voxels() const;

@@ -35,7 +35,7 @@ class EveryEstimator : public testing::TestWithParam<const EstimatorEntry*> {
       return T_there_here * core::se3::exp(xi);
     };
     const SE3 T_body_lidar = rig_.lidars[0].T_body_lidar;
-    std::vector<Eigen::Vector3d> world = tests::landmarks(18, 2.4, 0.8);
+    std::vector<Eigen::Vector3d> world = tests::wall_points();
     for (Eigen::Vector3d& p : world) p = T_there_here * p;
     std::vector<core::LidarSweep> sweeps;
     const tests::Motion lidar = [&](double t_s) -> SE3 { return body(t_s) * T_body_lidar; };
@@ -65,8 +65,8 @@ class EveryEstimator : public testing::TestWithParam<const EstimatorEntry*> {
 
 TEST_P(EveryEstimator, AStillRigGivesAStillTrajectory) {
   std::vector<core::LidarSweep> sweeps;
-  const std::vector<Eigen::Vector3d> world = tests::landmarks(18, 2.4, 0.8);
-  for (int k = 0; k < 30; ++k) sweeps.push_back(tests::sweep_at(k, world, tests::still(), {.noise_m = 0.01}));
+  const std::vector<Eigen::Vector3d> world = tests::wall_points();
+  for (int k = 0; k < 30; ++k) sweeps.push_back(tests::sweep_at(k, world, tests::still(), {.noise_m = 0.005}));
   const RunResult result = run(tests::write_recording(folder_ / "still", rig_, sweeps, tests::imu_at_rest(rig_, 3)));
   std::vector<SE3> poses;
   for (const core::SweepResult& sweep : result.estimate.sweeps) {
