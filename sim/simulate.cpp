@@ -115,10 +115,7 @@ std::size_t write_imu(const RigOptions& options, const std::vector<ImuSample>& s
 }  // namespace
 
 void check(const SimulationInput& input) {
-  const RigOptions options = read_setup(input).rig;
-  sweeps_within(
-      lidar::FiringTable(lidar::profile(options.lidar.model), {options.lidar.columns, options.lidar.sweep_rate_hz}),
-      input);
+  sweeps_within(firing_table(read_setup(input).rig, input.seed), input);
 }
 
 SimulationSummary simulate(const SimulationInput& input, const SimulationSettings& settings,
@@ -128,11 +125,10 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   const int threads = std::clamp(settings.threads, 1, tbb::info::default_concurrency());
   Setup setup = read_setup(input);
   const RigOptions& options = setup.rig;
-  const lidar::Profile& profile = lidar::profile(options.lidar.model);
 
   const auto tracer =
       std::make_shared<const raycast::Tracer>(input.scene, raycast::TracerSettings{threads, settings.fast});
-  const lidar::SweepSimulator simulator(profile, {options.lidar.columns, options.lidar.sweep_rate_hz},
+  const lidar::SweepSimulator simulator(options.lidar.profile, firing_table(options, input.seed),
                                         {.sensor = 0, .T_body_lidar = setup.truth.lidars[0].T_body_lidar},
                                         options.lidar.noise, input.seed, tracer, input.scene, input.motion);
   const std::int64_t count = sweeps_within(simulator.firing(), input);
