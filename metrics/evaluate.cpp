@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "metrics/cost.h"
+#include "metrics/drift.h"
 #include "metrics/point_error.h"
 #include "metrics/trajectory_error.h"
 
@@ -145,6 +146,26 @@ void add_motion(const EvaluationInput& input, Time t_zero, std::vector<Series>& 
   series.push_back(std::move(yaw_rate));
 }
 
+/// Deskew error where it is hardest: in the sweeps in whose middle the vehicle brakes.
+void add_braking_row(const EvaluationInput& input, const std::vector<SweepErrors>& sweeps, RowSet& rows) {
+  constexpr double kHardM_s2 = 2.5;
+  SquaredSum braking;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < sweeps.size(); ++i) {
+    const PointLabels& labels = (*input.labels)[i];
+    const Time middle = labels.begin + (labels.end - labels.begin) / 2;
+    if (!sweeps[i].scored || !input.truth->motion->covers(middle)) continue;
+    const Kinematics k = input.truth->motion->at(middle);
+    if (k.a_world.dot(k.T_world_body.linear().col(0)) >= -kHardM_s2) continue;
+    braking.add(sweeps[i].of[static_cast<std::size_t>(PointFamily::deskew)]);
+    ++count;
+  }
+  if (braking.n == 0)
+    rows.missing("deskew_error_braking_rms_m", fmt::format("no sweep brakes harder than {} m/s2", kHardM_s2));
+  else
+    rows.put("deskew_error_braking_rms_m", braking.rms(), fmt::format("{} sweeps", count));
+}
+
 void gather_map(std::vector<SweepErrors>& sweeps, MapSample& map) {
   for (const SweepErrors& sweep : sweeps) {
     map.p_world_m.insert(map.p_world_m.end(), sweep.map.p_world_m.begin(), sweep.map.p_world_m.end());
@@ -194,9 +215,12 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
     add_trajectory_rows(subject.pairs, {.gravity_aligned = input.estimate.gravity_aligned}, rows);
     PointErrors points = score_points(input, settings, subject, headline ? settings.map_points : 0);
     add_point_rows(points.sweeps, points.histograms, rows);
+    add_drift_rows(subject.pairs, rows);
+    add_braking_row(input, points.sweeps, rows);
     if (headline) {
       add_paths(input, subject.pairs, evaluation.series);
       add_trajectory_series(subject.pairs, t_zero, evaluation.series);
+      add_drift_series(subject.pairs, t_zero, evaluation.series);
       add_point_series(points.sweeps, points.histograms, t_zero, evaluation.series);
       gather_map(points.sweeps, evaluation.map);
     }

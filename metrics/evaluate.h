@@ -1,14 +1,26 @@
 /// Estimate x ground truth -> Evaluation.
 ///
 /// Series, of the headline estimate (causal, or final for a batch method); x and y of paths are world coordinates:
-///   path_true, path_estimate               [m] at the sweeps' ends, the estimate after first-pose alignment (NaN: not
-///   scored) error_vs_time, error_vs_distance       position error after first-pose alignment drift_vs_distance error
-///   of the motion along stretches of a length, with its band reference_error_by_phase               where in the sweep
-///   the estimate bends, seen from the sweep's reference instant:
-///                                          the one to show; without deskewing it rises to v x T at the far end
-///   deskew_error_by_phase, point_error_by_phase   the same after the sweep's best fit; and with drift
-///   deskew_error_vs_time, sweep_time_vs_time, iterations_vs_time      a value a sweep
-///   speed_vs_time, yaw_rate_vs_time        the true motion
+///
+///   path_true, path_estimate: [m] at the sweeps' ends, the estimate after first-pose alignment (NaN: not scored);
+///     without truth path_estimate is in the map's own frame, and there is no path_true
+///
+///   error_vs_time, error_vs_distance: position error after first-pose alignment
+///
+///   error_{along,cross,height,yaw,tilt}_vs_time: the same, signed and split in the level axes of the true heading
+///
+///   drift_vs_distance: error of the motion along stretches of a length, with its band
+///
+///   drift_{along,cross,height,yaw,tilt}_vs_{distance,duration}: the same, split
+///
+///   reference_error_by_phase: where in the sweep the estimate bends, seen from the sweep's reference instant: the one
+///     to show; without deskewing it rises to v x T at the far end
+///
+///   deskew_error_by_phase, point_error_by_phase: the same after the sweep's best fit; and with drift
+///
+///   deskew_error_vs_time, sweep_time_vs_time, iterations_vs_time: a value a sweep
+///
+///   speed_vs_time, yaw_rate_vs_time: the true motion
 #pragma once
 
 #include "core/diagnostics.h"

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/trajectory.h"
+#include "metrics/drift.h"
 #include "metrics/pose_pairs.h"
 #include "metrics/trajectory_error.h"
 
@@ -92,6 +93,7 @@ ForeignEvaluation evaluate_poses(const std::vector<StampedPose>& truth, const st
   RowSet rows("causal");
   rows.put("coverage_percent", 100 * static_cast<double>(pairs.size()) / static_cast<double>(estimate.size()));
   add_trajectory_rows(pairs, {.gravity_aligned = settings.gravity_aligned, .common_frame = true}, rows);
+  add_drift_rows(pairs, rows);
   result.rows = rows.rows();
   if (settings.alignment) {
     const std::string wanted = fmt::format("ate_{}_", name_of(*settings.alignment));

@@ -22,7 +22,7 @@ struct ForeignSettings {
 };
 
 struct ForeignEvaluation {
-  std::vector<Row> rows;  ///< ate_*, rpe_*, end_error_*, path_length_m, coverage_percent; of the registry's names
+  std::vector<Row> rows;  ///< ate_*, rpe_*, kitti_*, drift_*, end_error_*, path_length_m, coverage_percent
   std::size_t associated = 0;
   std::size_t outside = 0;  ///< estimate stamps before the first or after the last true pose: left out
   std::size_t in_gaps = 0;  ///< estimate stamps inside a gap of the truth: left out

@@ -9,6 +9,8 @@ constexpr const char* kNone = "none needed";
 constexpr const char* kZhang = "Zhang and Scaramuzza 2018, A Tutorial on Quantitative Trajectory Evaluation";
 constexpr const char* kSturm = "Sturm et al. 2012, A Benchmark for the Evaluation of RGB-D SLAM Systems";
 constexpr const char* kUmeyama = "Umeyama 1991, Least-Squares Estimation of Transformation Parameters";
+constexpr const char* kKitti =
+    "Geiger et al. 2012, Are we ready for Autonomous Driving? The KITTI Vision Benchmark Suite";
 constexpr const char* kOwn = "metrics/README.md";
 
 constexpr MetricEntry kMetrics[] = {
@@ -64,6 +66,20 @@ constexpr MetricEntry kMetrics[] = {
     {"path_length_m", "m", false, kNone, "Length of the true path between the first and the last scored pose.", kOwn,
      "trajectory"},
 
+    {"kitti_trans_percent", "%", true, kNone,
+     "KITTI's translation error: over segments of 100 to 800 m, error of the motion over the segment's length; mean. "
+     "n/a below 200 m of path; the count of segments is beside it.",
+     kKitti, "drift"},
+    {"kitti_rot_deg_per_100m", "deg/100m", true, kNone, "KITTI's rotation error over the same segments; mean.", kKitti,
+     "drift"},
+    {"drift_50m_along_rms_m", "m", true, kNone,
+     "Error of the motion over 50 m of true path, seen at its end along the true heading; RMS.", kOwn, "drift"},
+    {"drift_50m_cross_rms_m", "m", true, kNone, "The same, across the true heading.", kOwn, "drift"},
+    {"drift_50m_height_rms_m", "m", true, kNone, "The same, in height.", kOwn, "drift"},
+    {"drift_50m_yaw_rms_deg", "deg", true, kNone, "Rotation error over 50 m of true path, about the vertical; RMS.",
+     kOwn, "drift"},
+    {"drift_50m_tilt_rms_deg", "deg", true, kNone, "The same, roll and pitch together.", kOwn, "drift"},
+
     {"point_error_rms_m", "m", true, kFirst,
      "How far from its true place the estimate puts each static point, at the point's own firing time; RMS.", kOwn,
      "points"},
@@ -77,6 +93,8 @@ constexpr MetricEntry kMetrics[] = {
      "How far a sweep is bent: distance of its static points from their true places after the sweep's best rigid "
      "motion; RMS over all points. Large when motion during the sweep is not undone.",
      kOwn, "points"},
+    {"deskew_error_braking_rms_m", "m", true, "each sweep's own best rigid motion",
+     "The same over the sweeps in whose middle the vehicle truly brakes harder than 2.5 m/s2.", kOwn, "points"},
     {"sweep_shear_rms_m", "m", true, kNone,
      "Error of the motion from a sweep's first to its last firing, translation part; RMS over sweeps.", kOwn, "points"},
     {"sweep_shear_rot_rms_deg", "deg", true, kNone, "The same, rotation part.", kOwn, "points"},

@@ -13,17 +13,12 @@ namespace {
 
 using namespace core;
 
-struct Packed {
-  std::uint64_t digest = 0;
-  std::vector<std::byte> bytes;
-};
-
 struct FinishedSweep {
   lidar::SimulatedSweep simulated;
-  Packed points, labels;
+  EncodedSweep encoded;
 };
 
-Packed pack(const ChunkData& data) {
+EncodedChunk pack(const ChunkData& data) {
   return {ChunkWriter::digest(data), ChunkWriter::pack(data)};
 }
 
@@ -45,6 +40,10 @@ truth::PointLabels labels_of(const lidar::SimulatedSweep& simulated, const scene
 
 }  // namespace
 
+EncodedSweep encode(const lidar::SimulatedSweep& simulated, const scenes::Scene& scene) {
+  return {pack(RecordingWriter::chunk(simulated.sweep)), pack(truth::to_chunk(labels_of(simulated, scene)))};
+}
+
 PipelineTotals run_sweeps(const lidar::SweepSimulator& simulator, const scenes::Scene& scene, std::int64_t count,
                           int threads, RecordingWriter& recording, ChunkWriter& labels, const AfterSweep& after_sweep) {
   using Item = std::shared_ptr<FinishedSweep>;
@@ -57,14 +56,13 @@ PipelineTotals run_sweeps(const lidar::SweepSimulator& simulator, const scenes::
   const auto simulate = [&](std::int64_t index) -> Item {
     auto item = std::make_shared<FinishedSweep>();
     item->simulated = simulator.sweep(index);
-    item->points = pack(RecordingWriter::chunk(item->simulated.sweep));
-    item->labels = pack(truth::to_chunk(labels_of(item->simulated, scene)));
+    item->encoded = encode(item->simulated, scene);
     return item;
   };
   const auto write = [&](const Item& item) {
     const LidarSweep& sweep = item->simulated.sweep;
-    recording.write_packed(sweep, item->points.digest, item->points.bytes);
-    labels.append(sweep.begin, item->labels.digest, item->labels.bytes);
+    recording.write_packed(sweep, item->encoded.points.digest, item->encoded.points.bytes);
+    labels.append(sweep.begin, item->encoded.labels.digest, item->encoded.labels.bytes);
     totals.sweeps += 1;
     totals.rays += item->simulated.rays;
     totals.points += sweep.size();

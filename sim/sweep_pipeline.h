@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "core/chunk_file.h"
 #include "core/recording.h"
@@ -10,6 +11,19 @@
 #include "sim/lidar/sweep_simulator.h"
 
 namespace tarmac::sim {
+
+/// A chunk as it is appended to a file.
+struct EncodedChunk {
+  std::uint64_t digest = 0;
+  std::vector<std::byte> bytes;
+};
+
+struct EncodedSweep {
+  EncodedChunk points, labels;
+};
+
+/// Points for the recording, what they hit for the truth.
+EncodedSweep encode(const lidar::SimulatedSweep& simulated, const scenes::Scene& scene);
 
 struct PipelineTotals {
   std::size_t sweeps = 0, rays = 0, points = 0;

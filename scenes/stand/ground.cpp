@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "core/vector_loop.h"
 #include "scenes/stand/layout.h"
 
 namespace tarmac::scenes {
@@ -104,8 +105,9 @@ double octave(const core::RandomStream& random, std::uint32_t id, int period, do
   return low + wt * (high - low);
 }
 
-constexpr double node_m = 0.05;   ///< the finest grain of the texture
-constexpr double turn_rad = 0.4;  ///< the lattice is parallel neither to joints nor to roads
+constexpr double groove_reach = 2.5;  ///< half widths from a joint's middle to where nothing is left of it
+constexpr double node_m = 0.05;       ///< the finest grain of the texture
+constexpr double turn_rad = 0.4;      ///< the lattice is parallel neither to joints nor to roads
 
 }  // namespace
 
@@ -167,7 +169,7 @@ double StandRelief::groove_m(double across_m, double along_m, double& d_across, 
   const double d = across_m - cell * grid_.size_m;
   const double w = grid_.joint_width_m / 2;
   d_across = d_along = 0;
-  if (std::abs(d) > 2.5 * w) return 0;  // exp(-2.5^4) is 1e-17
+  if (std::abs(d) > groove_reach * w) return 0;  // exp(-2.5^4) is 1e-17
   const double q = d / w, profile = std::exp(-q * q * q * q);
   constexpr double wander_per_m = 0.7;
   const double phase = wander_per_m * along_m + 1.7 * cell;
@@ -192,6 +194,74 @@ double StandRelief::height_m(double x_m, double y_m, Eigen::Vector2d* gradient) 
                                     a_y * (1 + b * share) + b_y * (1 + a * share));
   }
   return height + a + b + a * b * share;
+}
+
+namespace {
+
+/// The texture alone, and which points have a joint near enough to matter. Lattice coordinates are split into node and
+/// fraction in double, so that single precision does the rest anywhere in the world.
+TARMAC_VECTOR_LOOP void texture_of(std::size_t count, const double* x_m, const double* y_m, double cos_per_m,
+                                   double sin_per_m, const float* __restrict lattice_m, int bits, double* __restrict u,
+                                   double* __restrict v, float* __restrict height_m, float* __restrict slope_x,
+                                   float* __restrict slope_y) {
+  for (std::size_t k = 0; k < count; ++k) {
+    u[k] = cos_per_m * x_m[k] + sin_per_m * y_m[k];
+    v[k] = cos_per_m * y_m[k] - sin_per_m * x_m[k];
+  }
+  const int mask = (1 << bits) - 1;
+  const float cos_f = static_cast<float>(cos_per_m), sin_f = static_cast<float>(sin_per_m);
+  for (std::size_t k = 0; k < count; ++k) {
+    const int i = floor_to_int(u[k]), j = floor_to_int(v[k]);
+    const float s = static_cast<float>(u[k] - i), t = static_cast<float>(v[k] - j);
+    const int row0 = (j & mask) << bits, row1 = ((j + 1) & mask) << bits, left = i & mask, right = (i + 1) & mask;
+    const float f00 = lattice_m[row0 + left], f10 = lattice_m[row0 + right];
+    const float f01 = lattice_m[row1 + left], f11 = lattice_m[row1 + right];
+    const float ws = s * s * s * (s * (6 * s - 15) + 10), wt = t * t * t * (t * (6 * t - 15) + 10);
+    const float ds = 30 * s * s * (s - 1) * (s - 1), dt = 30 * t * t * (t - 1) * (t - 1);
+    const float low = f00 + ws * (f10 - f00), high = f01 + ws * (f11 - f01);
+    const float du = ds * ((1 - wt) * (f10 - f00) + wt * (f11 - f01)), dv = dt * (high - low);
+    height_m[k] = low + wt * (high - low);
+    slope_x[k] = cos_f * du - sin_f * dv;
+    slope_y[k] = sin_f * du + cos_f * dv;
+  }
+}
+
+/// Slabs from the nearest joint's middle, of the joints at whole multiples.
+inline double from_joint(double slabs) {
+  return std::abs(slabs - floor_to_int(slabs + 0.5));
+}
+
+TARMAC_VECTOR_LOOP void mark_joints(std::size_t count, const double* x_m, const double* y_m, double west_m,
+                                    double south_m, double slabs_per_m, double reach_slabs, int* near_joint) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const double across = from_joint((x_m[k] - west_m) * slabs_per_m),
+                 along = from_joint((y_m[k] - south_m) * slabs_per_m);
+    near_joint[k] = (across < reach_slabs) | (along < reach_slabs);
+  }
+}
+
+}  // namespace
+
+void StandRelief::heights_m(std::size_t count, const double* x_m, const double* y_m, float* heights, float* slope_x,
+                            float* slope_y) const {
+  constexpr std::size_t batch = 256;
+  double u[batch], v[batch];
+  int near_joint[batch];
+  const double reach_slabs = groove_reach * grid_.joint_width_m / 2 * slabs_per_m_ + 1e-9;
+  for (std::size_t first = 0; first < count; first += batch) {
+    const std::size_t n = std::min(batch, count - first);
+    texture_of(n, x_m + first, y_m + first, cos_per_m_, sin_per_m_, lattice_m_.data(), lattice_bits, u, v,
+               heights + first, slope_x + first, slope_y + first);
+    mark_joints(n, x_m + first, y_m + first, grid_.origin_m.x(), grid_.origin_m.y(), slabs_per_m_, reach_slabs,
+                near_joint);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (near_joint[k] == 0) continue;
+      Eigen::Vector2d gradient;
+      heights[first + k] = static_cast<float>(height_m(x_m[first + k], y_m[first + k], &gradient));
+      slope_x[first + k] = static_cast<float>(gradient.x());
+      slope_y[first + k] = static_cast<float>(gradient.y());
+    }
+  }
 }
 
 }  // namespace tarmac::scenes

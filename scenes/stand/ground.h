@@ -60,11 +60,14 @@ class SlabSurface {
 };
 
 /// Texture: one lattice of nodes 5 cm apart whose heights are the sum of grains of 0.05, 0.2 and 0.8 m, interpolated by
-/// quintics (C2, closed form a cell); it repeats every 12.8 m. Joints: grooves of profile exp(-(d/w)^4), w = half the joint's width, whose depth wanders along the joint.
+/// quintics (C2, closed form a cell); it repeats every 12.8 m. Joints: grooves of profile exp(-(d/w)^4), w = half the
+/// joint's width, whose depth wanders along the joint.
 class StandRelief final : public Relief {
  public:
   StandRelief(const StandOptions& options, std::uint64_t seed);
   double height_m(double x_m, double y_m, Eigen::Vector2d* gradient = nullptr) const override;
+  void heights_m(std::size_t count, const double* x_m, const double* y_m, float* heights, float* slope_x,
+                 float* slope_y) const override;
 
  private:
   static constexpr int lattice_bits = 8, lattice_size = 1 << lattice_bits;

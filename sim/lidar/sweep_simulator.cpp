@@ -7,11 +7,12 @@
 #include <cmath>
 #include <utility>
 
+#include "core/vector_loop.h"
+
 namespace tarmac::sim::lidar {
 namespace {
 
 using core::Duration;
-using core::Kinematics;
 using core::Time;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -29,17 +30,100 @@ std::string stream_name(std::uint16_t sensor, const char* effect) {
   return fmt::format("lidar{}/{}", sensor, effect);
 }
 
-// The pose of the sensor around one cycle's time: T(t + dt) = (p + v dt, R (I + hat(w) dt)), p relative to `base`.
-struct SensorMotion {
-  Matrix3d R;
-  Vector3d p, v, w_sensor;
+/// Turns the sensor's beams by -azimuth about z: azimuths are clockwise.
+Matrix3d turned_by(const Cycle& cycle) {
+  Matrix3d turn;
+  turn << cycle.cos_azimuth, cycle.sin_azimuth, 0, -cycle.sin_azimuth, cycle.cos_azimuth, 0, 0, 0, 1;
+  return turn;
+}
 
-  SensorMotion(const Kinematics& k, const core::SE3& T_body_lidar, const Vector3d& base)
-      : R(k.T_world_body.linear() * T_body_lidar.linear()),
-        p(k.T_world_body * T_body_lidar.translation() - base),
-        v(k.v_world + k.T_world_body.linear() * k.omega_body.cross(T_body_lidar.translation())),
-        w_sensor(T_body_lidar.linear().transpose() * k.omega_body) {}
+/// The rays of one cycle: o = origin + dt rate, d = (R + dt S) b, for beams b in the head's frame.
+struct CycleRays {
+  Matrix3d R, S;
+  Vector3d origin, rate;
+
+  // The sensor around the cycle's time: T(t + dt) = (p + v dt, R (I + hat(w) dt)), p relative to `base`.
+  CycleRays(const BodyState& body, const core::SE3& T_body_lidar, const Vector3d& base, const Cycle& cycle,
+            const Vector3d& origin_sensor) {
+    const Matrix3d R_world_lidar = body.R_world_body * T_body_lidar.linear(), turn = turned_by(cycle);
+    const Vector3d omega_lidar = T_body_lidar.linear().transpose() * body.omega_body;
+    const Vector3d arm = body.R_world_body * T_body_lidar.translation();
+    const Matrix3d swing = R_world_lidar * core::so3::hat(omega_lidar);
+    R = R_world_lidar * turn;
+    S = swing * turn;
+    origin = body.p_world + arm - base + R_world_lidar * origin_sensor;
+    rate = body.v_world + body.R_world_body * body.omega_body.cross(T_body_lidar.translation()) + swing * origin_sensor;
+  }
+
+  /// How far a beam's own origin, in the head's frame, moves the ray.
+  Vector3d shift(const Vector3d& offset, double dt_s) const { return (R + dt_s * S) * offset; }
 };
+
+struct Beams {
+  const double *x, *y, *z, *offset_s;
+};
+struct RayArrays {
+  double *ox, *oy, *oz, *dx, *dy, *dz;
+};
+
+TARMAC_VECTOR_LOOP void aim_cycle(std::size_t channels, const Beams b, const double* __restrict R,
+                                  const double* __restrict S, const double* __restrict origin,
+                                  const double* __restrict rate, const RayArrays out) {
+  const double r0 = R[0], r1 = R[1], r2 = R[2], r3 = R[3], r4 = R[4], r5 = R[5], r6 = R[6], r7 = R[7], r8 = R[8];
+  const double s0 = S[0], s1 = S[1], s2 = S[2], s3 = S[3], s4 = S[4], s5 = S[5], s6 = S[6], s7 = S[7], s8 = S[8];
+  const double ox = origin[0], oy = origin[1], oz = origin[2], vx = rate[0], vy = rate[1], vz = rate[2];
+#pragma GCC ivdep
+  for (std::size_t c = 0; c < channels; ++c) {
+    const double x = b.x[c], y = b.y[c], z = b.z[c], dt = b.offset_s[c];
+    out.ox[c] = ox + dt * vx;
+    out.oy[c] = oy + dt * vy;
+    out.oz[c] = oz + dt * vz;
+    out.dx[c] = r0 * x + r3 * y + r6 * z + dt * (s0 * x + s3 * y + s6 * z);
+    out.dy[c] = r1 * x + r4 * y + r7 * z + dt * (s1 * x + s4 * y + s7 * z);
+    out.dz[c] = r2 * x + r5 * y + r8 * z + dt * (s2 * x + s5 * y + s8 * z);
+  }
+}
+
+/// Raw ranges of what was met, 0 where nothing was.
+TARMAC_VECTOR_LOOP void raw_ranges(std::size_t count, const double* __restrict t_m,
+                                   const std::uint32_t* __restrict instance, double offset_m,
+                                   double* __restrict range_m) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double range = t_m[i] + offset_m;
+    range_m[i] = instance[i] != raycast::Hits::nothing ? range : 0.0;
+  }
+}
+
+/// p = origin + (range - offset) direction, by the nominal table: what the sensor's driver computes from a raw range.
+TARMAC_VECTOR_LOOP void place_cycle(std::size_t channels, const Beams b, double cos_azimuth, double sin_azimuth,
+                                    const double* __restrict origin, double offset_m, const double* __restrict range_m,
+                                    float* __restrict x_m, float* __restrict y_m, float* __restrict z_m) {
+  const double ox = origin[0], oy = origin[1], oz = origin[2];
+  for (std::size_t c = 0; c < channels; ++c) {
+    const double r = range_m[c] - offset_m, x = b.x[c], y = b.y[c];
+    x_m[c] = static_cast<float>(ox + r * (x * cos_azimuth + y * sin_azimuth));
+    y_m[c] = static_cast<float>(oy + r * (y * cos_azimuth - x * sin_azimuth));
+    z_m[c] = static_cast<float>(oz + r * b.z[c]);
+  }
+}
+
+void shift(raycast::Rays& rays, std::size_t i, const Vector3d& by) {
+  rays.ox[i] += by.x();
+  rays.oy[i] += by.y();
+  rays.oz[i] += by.z();
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from, std::size_t count) {
+  to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+void clear(SimulatedSweep& out) {
+  core::LidarSweep& s = out.sweep;
+  s.x_m.clear(), s.y_m.clear(), s.z_m.clear(), s.t_ns.clear(), s.ring.clear(), s.intensity.clear();
+  out.instance.clear();
+  out.trace_cpu_s = 0;
+}
 
 }  // namespace
 
@@ -77,11 +161,38 @@ SweepSimulator::SweepSimulator(const Profile& profile, FiringTable firing, const
       channel_bias_(profile, noise.channel_bias_scale, seed, stream_name(mounting.sensor, "channel_bias").c_str()),
       intensity_(noise.intensity, seed, stream_name(mounting.sensor, "intensity").c_str()),
       batch_cycles_(std::max<std::size_t>(1, batch_rays / (tile * firing_.channels())) * tile),
-      batch_tiles_(firing_.tiles(batch_cycles_)) {}
+      batch_tiles_(firing_.tiles(batch_cycles_)) {
+  for (std::size_t c = 0; c < firing_.channels(); ++c) {
+    const Cycle ahead{Time{}, 1, 0, 1, 0};
+    const Vector3d beam = firing_.direction(ahead, c);
+    origin_offset_.push_back(firing_.origin_offset(ahead, c));
+    beam_x_.push_back(beam.x());
+    beam_y_.push_back(beam.y());
+    beam_z_.push_back(beam.z());
+    offset_s_.push_back(1e-9 * firing_.offset_ns(c));
+    ring_.push_back(static_cast<std::uint16_t>(profile_.ring[c]));
+  }
+}
+
+raycast::SweepTracer SweepSimulator::tracer_for(const SweepSpan& span) const {
+  const Vector3d origin = motion_->pose(span.begin) * mounting_.T_body_lidar.translation();
+  return tracer_->sweep(span.begin, span.end, origin, profile_.max_range_m + 1);
+}
+
+SweepMotion SweepSimulator::motion_of(const SweepSpan& span) const {
+  return SweepMotion(*motion_, firing_.cycle(span, 0).t, firing_.cycle(span, span.cycles - 1).t);
+}
 
 SimulatedSweep SweepSimulator::sweep(std::int64_t index) const {
-  const SweepSpan span = firing_.sweep(index);
+  Workspace workspace;
   SimulatedSweep out;
+  sweep(index, workspace, out);
+  return out;
+}
+
+void SweepSimulator::sweep(std::int64_t index, Workspace& w, SimulatedSweep& out) const {
+  const SweepSpan span = firing_.sweep(index);
+  clear(out);
   out.sweep.index = index;
   out.sweep.begin = span.begin;
   out.sweep.end = span.end;
@@ -90,12 +201,11 @@ SimulatedSweep SweepSimulator::sweep(std::int64_t index) const {
   out.sweep.reserve(out.rays);
   out.instance.reserve(out.rays);
 
-  const Vector3d origin = motion_->pose(span.begin) * mounting_.T_body_lidar.translation();
-  const raycast::SweepTracer tracer = tracer_->sweep(span.begin, span.end, origin, profile_.max_range_m + 1);
-  Workspace w;
+  const raycast::SweepTracer tracer = tracer_for(span);
+  const SweepMotion motion = motion_of(span);
   for (std::int64_t first = 0; first < span.cycles; first += static_cast<std::int64_t>(batch_cycles_)) {
     const std::size_t cycles = std::min(batch_cycles_, static_cast<std::size_t>(span.cycles - first));
-    aim(span, first, cycles, tracer.base(), w);
+    aim(span, motion, first, cycles, tracer.base(), w);
     const double before_s = thread_cpu_s();
     if (cycles == batch_cycles_)
       tracer.trace(w.rays, batch_tiles_, w.hits);
@@ -103,43 +213,44 @@ SimulatedSweep SweepSimulator::sweep(std::int64_t index) const {
       tracer.trace(w.rays, firing_.tiles(cycles), w.hits);
     out.trace_cpu_s += thread_cpu_s() - before_s;
     measure(span, first, w);
-    report(span, w, out);
+    report(w, out);
   }
-  return out;
 }
 
-void SweepSimulator::aim(const SweepSpan& span, std::int64_t first, std::size_t cycles, const Vector3d& base,
-                         Workspace& w) const {
+AimedSweep SweepSimulator::aimed(std::int64_t index) const {
+  const SweepSpan span = firing_.sweep(index);
+  AimedSweep result{tracer_for(span), {}, {}};
+  Workspace w;
+  aim(span, motion_of(span), 0, static_cast<std::size_t>(span.cycles), result.tracer.base(), w);
+  result.rays = std::move(w.rays);
+  for (std::int64_t first = 0; first < span.cycles; first += static_cast<std::int64_t>(batch_cycles_)) {
+    const std::size_t cycles = std::min(batch_cycles_, static_cast<std::size_t>(span.cycles - first));
+    const auto offset = static_cast<std::uint32_t>(static_cast<std::size_t>(first) * firing_.channels());
+    for (const std::uint32_t ray : firing_.tiles(cycles))
+      result.tiles.push_back(ray == raycast::SweepTracer::no_ray ? ray : ray + offset);
+  }
+  return result;
+}
+
+void SweepSimulator::aim(const SweepSpan& span, const SweepMotion& motion, std::int64_t first, std::size_t cycles,
+                         const Vector3d& base, Workspace& w) const {
   const std::size_t channels = firing_.channels();
+  const Beams beams{beam_x_.data(), beam_y_.data(), beam_z_.data(), offset_s_.data()};
   raycast::Rays& rays = w.rays;
   rays.resize(cycles * channels);
   w.cycles.resize(cycles);
-  for (std::size_t k = 0, i = 0; k < cycles; ++k) {
+  for (std::size_t k = 0; k < cycles; ++k) {
     const Cycle& cycle = w.cycles[k] = firing_.cycle(span, first + static_cast<std::int64_t>(k));
-    const SensorMotion sensor(motion_->at(cycle.t), mounting_.T_body_lidar, base);
-    const Vector3d origin_sensor = firing_.origin(cycle), origin = sensor.p + sensor.R * origin_sensor;
-    const Vector3d origin_rate = sensor.v + sensor.R * sensor.w_sensor.cross(origin_sensor);
+    const CycleRays c(motion.at(cycle.t), mounting_.T_body_lidar, base, cycle, firing_.origin(cycle));
+    const std::size_t i = k * channels;
+    aim_cycle(channels, beams, c.R.data(), c.S.data(), c.origin.data(), c.rate.data(),
+              {&rays.ox[i], &rays.oy[i], &rays.oz[i], &rays.dx[i], &rays.dy[i], &rays.dz[i]});
+    if (firing_.channel_origins())
+      for (std::size_t channel = 0; channel < channels; ++channel)
+        shift(rays, i + channel, c.shift(origin_offset_[channel], offset_s_[channel]));
     const auto cycle_ns = static_cast<std::int32_t>((cycle.t - span.begin).count());
-    for (std::size_t c = 0; c < channels; ++c, ++i) {
-      Vector3d d = firing_.direction(cycle, c), o = origin;
-      const double dt = 1e-9 * firing_.offset_ns(c);
-      if (firing_.channel_origins()) {
-        const Vector3d offset = firing_.origin_offset(cycle, c);
-        o += sensor.R * (offset + dt * sensor.w_sensor.cross(offset));
-      }
-      if (firing_.staggered()) {
-        d += dt * sensor.w_sensor.cross(d);
-        o += dt * origin_rate;
-      }
-      d = sensor.R * d;
-      rays.ox[i] = o.x();
-      rays.oy[i] = o.y();
-      rays.oz[i] = o.z();
-      rays.dx[i] = d.x();
-      rays.dy[i] = d.y();
-      rays.dz[i] = d.z();
-      rays.t_ns[i] = cycle_ns + firing_.offset_ns(c);
-    }
+    for (std::size_t channel = 0; channel < channels; ++channel)
+      rays.t_ns[i + channel] = cycle_ns + firing_.offset_ns(channel);
   }
 }
 
@@ -148,12 +259,9 @@ void SweepSimulator::measure(const SweepSpan& span, std::int64_t first, Workspac
   e.resize(w.hits.size());
   e.channels = firing_.channels();
   e.first_firing = static_cast<std::uint64_t>(span.first_cycle + first) * firing_.channels();
-  for (std::size_t i = 0; i < e.size(); ++i) {
-    const bool met = w.hits.instance[i] != raycast::Hits::nothing;
-    e.range_m[i] = met ? w.hits.t_m[i] + firing_.range_offset_m() : 0;
-    e.cos_incidence[i] = w.hits.cos_incidence[i];
-    e.material[i] = w.hits.material[i];
-  }
+  raw_ranges(e.size(), w.hits.t_m.data(), w.hits.instance.data(), firing_.range_offset_m(), e.range_m.data());
+  e.cos_incidence.swap(w.hits.cos_incidence);
+  e.material.swap(w.hits.material);
   reflectance_(e);
   if (options_.dropout) detection_(e);
   if (options_.range_scale > 0) range_noise_(e);
@@ -162,23 +270,48 @@ void SweepSimulator::measure(const SweepSpan& span, std::int64_t first, Workspac
   intensity_(e);
 }
 
-// p = origin + (range - offset) direction, by the nominal table: what the sensor's driver computes from a raw range.
-void SweepSimulator::report(const SweepSpan&, const Workspace& w, SimulatedSweep& out) const {
-  const std::size_t channels = firing_.channels();
+void SweepSimulator::report(Workspace& w, SimulatedSweep& out) const {
+  const std::size_t channels = firing_.channels(), firings = w.echoes.size();
+  const Beams beams{beam_x_.data(), beam_y_.data(), beam_z_.data(), offset_s_.data()};
   const Echoes& e = w.echoes;
+  for (auto* v : {&w.x_m, &w.y_m, &w.z_m, &w.kept.x_m, &w.kept.y_m, &w.kept.z_m, &w.kept.intensity}) v->resize(firings);
+  w.kept.t_ns.resize(firings);
+  w.kept.ring.resize(firings);
+  w.kept_instance.resize(firings);
+  std::size_t kept = 0;
   for (std::size_t k = 0, i = 0; k < w.cycles.size(); ++k) {
     const Cycle cycle = w.cycles[k].reported();
-    const Vector3d shared_origin = firing_.origin(cycle);
+    const Vector3d origin = firing_.origin(cycle);
+    place_cycle(channels, beams, cycle.cos_azimuth, cycle.sin_azimuth, origin.data(), firing_.range_offset_m(),
+                &e.range_m[i], &w.x_m[i], &w.y_m[i], &w.z_m[i]);
+    if (firing_.channel_origins()) {
+      const Matrix3d turn = turned_by(cycle);
+      for (std::size_t c = 0; c < channels; ++c) {
+        const Eigen::Vector3f offset = (turn * origin_offset_[c]).cast<float>();
+        w.x_m[i + c] += offset.x();
+        w.y_m[i + c] += offset.y();
+        w.z_m[i + c] += offset.z();
+      }
+    }
+    // Each is written; those that do not count are written over by the next.
     for (std::size_t c = 0; c < channels; ++c, ++i) {
-      if (!(e.range_m[i] >= profile_.min_range_m && e.range_m[i] <= profile_.max_range_m)) continue;
-      Vector3d origin = shared_origin;
-      if (firing_.channel_origins()) origin += firing_.origin_offset(cycle, c);
-      const Vector3d p = origin + (e.range_m[i] - firing_.range_offset_m()) * firing_.direction(cycle, c);
-      out.sweep.push_back(p.cast<float>(), w.rays.t_ns[i], static_cast<std::uint16_t>(profile_.ring[c]),
-                          e.intensity[i]);
-      out.instance.push_back(w.hits.instance[i]);
+      w.kept.x_m[kept] = w.x_m[i];
+      w.kept.y_m[kept] = w.y_m[i];
+      w.kept.z_m[kept] = w.z_m[i];
+      w.kept.t_ns[kept] = w.rays.t_ns[i];
+      w.kept.ring[kept] = ring_[c];
+      w.kept.intensity[kept] = e.intensity[i];
+      w.kept_instance[kept] = w.hits.instance[i];
+      kept += (e.range_m[i] >= profile_.min_range_m) & (e.range_m[i] <= profile_.max_range_m);
     }
   }
+  append(out.sweep.x_m, w.kept.x_m, kept);
+  append(out.sweep.y_m, w.kept.y_m, kept);
+  append(out.sweep.z_m, w.kept.z_m, kept);
+  append(out.sweep.t_ns, w.kept.t_ns, kept);
+  append(out.sweep.ring, w.kept.ring, kept);
+  append(out.sweep.intensity, w.kept.intensity, kept);
+  append(out.instance, w.kept_instance, kept);
 }
 
 }  // namespace tarmac::sim::lidar

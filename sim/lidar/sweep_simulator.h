@@ -12,6 +12,7 @@
 #include "sim/lidar/effects/echoes.h"
 #include "sim/lidar/firing.h"
 #include "sim/lidar/profile.h"
+#include "sim/lidar/sweep_motion.h"
 #include "sim/raycast/tracer.h"
 
 namespace tarmac::sim::lidar {
@@ -38,11 +39,30 @@ struct SimulatedSweep {
   double trace_cpu_s = 0;  ///< processor time inside the tracer
 };
 
+/// Arrays that a sweep is made in; keep one a thread and hand it from sweep to sweep.
+struct Workspace {
+  raycast::Rays rays;
+  raycast::Hits hits;
+  Echoes echoes;
+  std::vector<Cycle> cycles;
+  std::vector<float> x_m, y_m, z_m;  ///< points of all firings, in the sensor's frame
+  core::LidarSweep kept;             ///< those of a batch that are reported
+  std::vector<std::uint32_t> kept_instance;
+};
+
+/// The rays of a whole sweep and the tiles they are traced in.
+struct AimedSweep {
+  raycast::SweepTracer tracer;
+  raycast::Rays rays;
+  std::vector<std::uint32_t> tiles;
+};
+
 /// Simulates sweeps in any order, on any number of threads at once: each is a function of its index alone.
 ///
-/// A beam leaves from the exact pose of the body at its cycle's time; where channels fire one after the other, the
-/// body's velocity and rate carry the pose over the rest of the cycle (first order; over 35 microseconds the neglected
-/// second order is below a micrometre at 100 m), while the spin of the head is in the beam table exactly.
+/// A beam leaves from the pose of the body at its cycle's time (SweepMotion: within a micrometre of it); where channels
+/// fire one after the other, the body's velocity and rate carry the pose over the rest of the cycle (first order; over
+/// 35 microseconds the neglected second order is below a micrometre at 100 m), while the spin of the head is in the
+/// beam table exactly.
 class SweepSimulator {
  public:
   SweepSimulator(const Profile& profile, const Mode& mode, const Mounting& mounting, const NoiseOptions& noise,
@@ -56,18 +76,18 @@ class SweepSimulator {
   const FiringTable& firing() const { return firing_; }
   /// Throws OutOfSpan when the motion does not cover the sweep.
   SimulatedSweep sweep(std::int64_t index) const;
+  /// The same into arrays that exist already; what `out` held is gone.
+  void sweep(std::int64_t index, Workspace& workspace, SimulatedSweep& out) const;
+  /// A sweep's rays without tracing them.
+  AimedSweep aimed(std::int64_t index) const;
 
  private:
-  struct Workspace {
-    raycast::Rays rays;
-    raycast::Hits hits;
-    Echoes echoes;
-    std::vector<Cycle> cycles;
-  };
-  void aim(const SweepSpan& span, std::int64_t first, std::size_t cycles, const Eigen::Vector3d& base,
-           Workspace& w) const;
+  raycast::SweepTracer tracer_for(const SweepSpan& span) const;
+  SweepMotion motion_of(const SweepSpan& span) const;
+  void aim(const SweepSpan& span, const SweepMotion& motion, std::int64_t first, std::size_t cycles,
+           const Eigen::Vector3d& base, Workspace& w) const;
   void measure(const SweepSpan& span, std::int64_t first, Workspace& w) const;
-  void report(const SweepSpan& span, const Workspace& w, SimulatedSweep& out) const;
+  void report(Workspace& w, SimulatedSweep& out) const;
 
   Profile profile_;
   FiringTable firing_;
@@ -81,6 +101,10 @@ class SweepSimulator {
   RangeNoise range_noise_;
   ChannelBias channel_bias_;
   Intensity intensity_;
+  // Of each channel: the beam at azimuth 0 (unit vector, sensor frame), seconds into the cycle, ring.
+  std::vector<double> beam_x_, beam_y_, beam_z_, offset_s_;
+  std::vector<Eigen::Vector3d> origin_offset_;  // of the beam from the cycle's origin, at azimuth 0 [m]
+  std::vector<std::uint16_t> ring_;
   std::size_t batch_cycles_;
   std::vector<std::uint32_t> batch_tiles_;
 };

@@ -32,8 +32,8 @@ EmbreeScene empty_scene(RTCDevice device);
 /// as geometry, with no instance. One hierarchy over all that stands still is faster to walk than instances whose boxes
 /// overlap on one pavement.
 void add_mesh(RTCDevice device, RTCScene scene, const scenes::Mesh& mesh, const core::SE3& T_base_mesh, unsigned id);
-/// Adds an instance under `id`, which hits report as instance. `poses` are T_base_mesh at equidistant times, the first at ray time
-/// 0 and the last at 1; one pose stands still.
+/// Adds an instance under `id`, which hits report as instance. `poses` are T_base_mesh at equidistant times, the first
+/// at ray time 0 and the last at 1; one pose stands still.
 void add_instance(RTCDevice device, RTCScene top, RTCScene mesh, unsigned id, std::span<const core::SE3> poses);
 /// Builds the hierarchy. Waits without taking up other work of the thread pool: callers may hold locks.
 void commit(RTCScene scene);

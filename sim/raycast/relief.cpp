@@ -4,72 +4,164 @@
 #include <cmath>
 #include <limits>
 
+#include "core/vector_loop.h"
+
 namespace tarmac::sim::raycast {
 namespace {
 
-constexpr double tolerance_m = 50e-6;  // of height
-constexpr double grazing_cosine = 0.01;
+constexpr float tolerance_m = 50e-6f;  // of height
 constexpr int max_iterations = 40;
+constexpr float infinity = std::numeric_limits<float>::infinity();
 
-// Heights seen so far bound how far a ray can be from its macro hit: farther out it is above or in the relief for sure.
-class Bracket {
- public:
-  explicit Bracket(double nd) : nd_(nd) {}
-  void add(double s, double f, double h) {
-    highest_m_ = std::max(highest_m_, std::abs(h));
-    if (f <= 0) {
-      below_ = std::min(below_, s);
-      if (above_ >= below_) above_ = -infinity;
-    } else if (s < below_) {
-      above_ = std::max(above_, s);
-    }  // else: above the relief behind a crest that the ray has gone through; what counts is before it
-  }
-  /// `wanted` where it lies between the known sides, else a point that brings them together.
-  double next(double wanted) {
-    if (std::isfinite(above_) && std::isfinite(below_))
-      return wanted > above_ && wanted < below_ ? wanted : 0.5 * (above_ + below_);
-    if (wanted < below_) return wanted;
-    retreat_ *= 2;
-    return below_ + retreat_ * highest_m_ / nd_;  // nd < 0: backwards
-  }
-
- private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-  double nd_;
-  double above_ = -infinity, below_ = infinity;  // rays run from above the relief to below it
-  double highest_m_ = 0;
-  double retreat_ = 0.5;
+/// One step of every ray, in arrays of equal length.
+struct Iteration {
+  const float *dx, *dy, *nd, *height_m, *slope_x, *slope_y;
+  float *s, *above, *below, *highest_m, *retreat;
+  std::uint32_t* done;
 };
 
-double shaded_cosine(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal, const Eigen::Vector2d& gradient) {
-  const Eigen::Vector3d n = (normal - Eigen::Vector3d(gradient.x(), gradient.y(), 0)).normalized();
-  // A facet that faces away is hidden by its crest in truth; the visible ones are seen no flatter than this.
-  return std::clamp(-n.dot(direction), 0.25 * -normal.dot(direction), 1.0);
+// Heights seen so far bound how far a ray can be from its macro hit: farther out it is above or in the relief for sure.
+// `above` and `below` are the known sides of the root nearest to it: rays run from above the relief to below it. Where
+// the ray is above the relief behind a crest that it has gone through, only what comes before the crest counts.
+TARMAC_VECTOR_LOOP void bracket(std::size_t count, const Iteration it) {
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < count; ++k) {
+    const float s = it.s[k], h = it.height_m[k], above = it.above[k], below = it.below[k], highest = it.highest_m[k];
+    const float f = s * it.nd[k] - h, size = f < 0 ? -f : f, height = h < 0 ? -h : h;
+    it.highest_m[k] = height > highest ? height : highest;
+    const float lowered = s < below ? s : below, below_now = f <= 0 ? lowered : below;
+    const float in_above = above >= below_now ? -infinity : above;
+    const float higher = s > above ? s : above, out_above = s < below ? higher : above;
+    it.below[k] = below_now;
+    it.above[k] = f <= 0 ? in_above : out_above;
+    it.done[k] = size < tolerance_m ? 1u : 0u;
+  }
+}
+
+// The Newton step where it lies between the known sides, else a point that brings them together.
+TARMAC_VECTOR_LOOP void step(std::size_t count, const Iteration it) {
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < count; ++k) {
+    const float s = it.s[k], nd = it.nd[k], above = it.above[k], below = it.below[k], retreat = it.retreat[k];
+    // The height field's own slope may turn the ray's approach round; the macro slope never does.
+    const float own = nd - it.slope_x[k] * it.dx[k] - it.slope_y[k] * it.dy[k];
+    const float wanted = s - (s * nd - it.height_m[k]) / (own < 0.25f * nd ? own : nd);
+    const float last = 0.5f * (above + below), farther = 2 * retreat;
+    const float behind = below + farther * it.highest_m[k] / nd;
+    const bool two_sides = below - above < infinity;
+    const float fallback = two_sides ? last : behind;
+    const float low = two_sides ? above : -infinity;
+    const float next_low = wanted > low ? wanted : fallback, next = wanted < below ? next_low : fallback;
+    const float one_side = wanted < below ? retreat : farther;
+    it.retreat[k] = two_sides ? retreat : one_side;
+    it.s[k] = it.done[k] != 0 ? s : next;
+  }
+}
+
+TARMAC_VECTOR_LOOP void advance(std::size_t count, const double* __restrict px, const double* __restrict py,
+                                const float* __restrict dx, const float* __restrict dy, const float* __restrict s,
+                                double* __restrict x, double* __restrict y) {
+  for (std::size_t k = 0; k < count; ++k) {
+    x[k] = px[k] + static_cast<double>(s[k] * dx[k]);
+    y[k] = py[k] + static_cast<double>(s[k] * dy[k]);
+  }
+}
+
+/// Of the relief's normal n - grad h with the ray. A facet that faces away is hidden by its crest in truth; the visible
+/// ones are seen no flatter than a quarter of the macro surface's cosine.
+TARMAC_VECTOR_LOOP void shade(std::size_t count, const float* __restrict dx, const float* __restrict dy,
+                              const float* __restrict nx, const float* __restrict ny, const float* __restrict nz,
+                              const float* __restrict nd, const float* __restrict slope_x,
+                              const float* __restrict slope_y, float* __restrict cosine) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const float gx = slope_x[k], gy = slope_y[k], flat = -nd[k];
+    const float mx = nx[k] - gx, my = ny[k] - gy, mz = nz[k];
+    const float c = (flat + gx * dx[k] + gy * dy[k]) / std::sqrt(mx * mx + my * my + mz * mz);
+    const float least = 0.25f * flat, seen = c < least ? least : c;
+    cosine[k] = seen > 1 ? 1 : seen;
+  }
 }
 
 }  // namespace
 
+void ReliefBatch::reserve(std::size_t count) {
+  if (px_m_.size() >= count) return;
+  for (auto* v : {&px_m_, &py_m_, &ax_m_, &ay_m_, &x_m_, &y_m_}) v->resize(count);
+  for (auto* v :
+       {&dx_,  &dy_,  &nx_, &ny_,    &nz_,    &nd_,        &s_out_,   &slope_x_out_, &slope_y_out_, &cosine_, &adx_,
+        &ady_, &and_, &s_,  &above_, &below_, &highest_m_, &retreat_, &height_m_,    &slope_x_,     &slope_y_})
+    v->resize(count);
+  ray_.resize(count);
+  done_.resize(count);
+  kept_.resize(count);
+}
+
+/// Notes where each ray stands and moves those that are not done to the front; returns how many there are.
+std::size_t ReliefBatch::compact(std::size_t active) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < active; ++k) {
+    kept_[kept] = static_cast<std::uint32_t>(k);
+    kept += done_[k] == 0;
+  }
+  if (active == size_) {  // the rays are still in their own order
+    std::copy_n(s_.begin(), size_, s_out_.begin());
+    std::copy_n(slope_x_.begin(), size_, slope_x_out_.begin());
+    std::copy_n(slope_y_.begin(), size_, slope_y_out_.begin());
+  } else {
+    for (std::size_t k = 0; k < active; ++k) {
+      const std::uint32_t ray = ray_[k];
+      s_out_[ray] = s_[k], slope_x_out_[ray] = slope_x_[k], slope_y_out_[ray] = slope_y_[k];
+    }
+  }
+  if (kept == active) return kept;
+  for (std::size_t k = 0; k < kept; ++k) {
+    const std::uint32_t from = kept_[k];
+    ray_[k] = ray_[from];
+    ax_m_[k] = ax_m_[from], ay_m_[k] = ay_m_[from];
+    adx_[k] = adx_[from], ady_[k] = ady_[from], and_[k] = and_[from];
+    s_[k] = s_[from], above_[k] = above_[from], below_[k] = below_[from];
+    highest_m_[k] = highest_m_[from], retreat_[k] = retreat_[from];
+  }
+  return kept;
+}
+
+void ReliefBatch::solve(const scenes::Relief& relief) {
+  std::copy_n(px_m_.begin(), size_, ax_m_.begin());
+  std::copy_n(py_m_.begin(), size_, ay_m_.begin());
+  std::copy_n(dx_.begin(), size_, adx_.begin());
+  std::copy_n(dy_.begin(), size_, ady_.begin());
+  std::copy_n(nd_.begin(), size_, and_.begin());
+  std::fill_n(s_.begin(), size_, 0.0f);
+  std::fill_n(above_.begin(), size_, -infinity);
+  std::fill_n(below_.begin(), size_, infinity);
+  std::fill_n(highest_m_.begin(), size_, 0.0f);
+  std::fill_n(retreat_.begin(), size_, 0.5f);
+  for (std::size_t k = 0; k < size_; ++k) ray_[k] = static_cast<std::uint32_t>(k);
+  const Iteration it{adx_.data(), ady_.data(),   and_.data(),   height_m_.data(),  slope_x_.data(), slope_y_.data(),
+                     s_.data(),   above_.data(), below_.data(), highest_m_.data(), retreat_.data(), done_.data()};
+  std::size_t active = size_;
+  for (int i = 0; i < max_iterations && active > 0; ++i) {
+    advance(active, ax_m_.data(), ay_m_.data(), adx_.data(), ady_.data(), s_.data(), x_m_.data(), y_m_.data());
+    relief.heights_m(active, x_m_.data(), y_m_.data(), height_m_.data(), slope_x_.data(), slope_y_.data());
+    bracket(active, it);
+    step(active, it);
+    // Hardly a ray is done after the first look; it stays where it is until the second.
+    if (i > 0) active = compact(active);
+  }
+  shade(size_, dx_.data(), dy_.data(), nx_.data(), ny_.data(), nz_.data(), nd_.data(), slope_x_out_.data(),
+        slope_y_out_.data(), cosine_.data());
+}
+
 ReliefHit meet_relief(const scenes::Relief& relief, const Eigen::Vector3d& p_macro_world,
                       const Eigen::Vector3d& direction, const Eigen::Vector3d& normal, double t_macro_m) {
   const double nd = normal.dot(direction);
-  ReliefHit hit{t_macro_m, -nd};
-  if (nd > -grazing_cosine) return hit;
-  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
-  Bracket bracket(nd);
-  double s = 0;  // t - t_macro
-  for (int i = 0; i < max_iterations; ++i) {
-    const double h =
-        relief.height_m(p_macro_world.x() + s * direction.x(), p_macro_world.y() + s * direction.y(), &gradient);
-    const double f = s * nd - h;
-    if (std::abs(f) < tolerance_m) break;
-    bracket.add(s, f, h);
-    const double slope = nd - gradient.x() * direction.x() - gradient.y() * direction.y();
-    // The height field's own slope may turn the ray's approach round; the macro slope never does.
-    s = bracket.next(s - f / (slope < 0.25 * nd ? slope : nd));
-  }
-  hit.t_m = t_macro_m + s;
-  hit.cos_incidence = shaded_cosine(direction, normal, gradient);
-  return hit;
+  if (!ReliefBatch::applies(nd)) return {t_macro_m, -nd};
+  const Eigen::Vector3f d = direction.cast<float>(), n = normal.cast<float>();
+  ReliefBatch one;
+  one.reserve(1);
+  one.push_back(p_macro_world.x(), p_macro_world.y(), d.x(), d.y(), n.x(), n.y(), n.z(), static_cast<float>(nd));
+  one.solve(relief);
+  return {t_macro_m + one.s_m()[0], one.cos_incidence()[0]};
 }
 
 }  // namespace tarmac::sim::raycast

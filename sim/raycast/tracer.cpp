@@ -2,17 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
-#include <map>
-#include <mutex>
-#include <unordered_map>
 #include <utility>
 
 #include "core/error.h"
-#include "sim/raycast/embree_scenes.h"
-#include "sim/raycast/relief.h"
-#include "sim/raycast/scene_frames.h"
+#include "sim/raycast/tracer_state.h"
 
 namespace tarmac::sim::raycast {
 namespace {
@@ -26,11 +20,6 @@ using Eigen::Vector3d;
 // micrometres at half a cell; a stand or a pier lies in one cell and is built once.
 constexpr double base_grid_m = 512;
 constexpr int max_motion_steps = 129;  // Embree's limit
-// Embree's own distance is off by its rounding and by the motion steps, both divided by the cosine of incidence; a
-// recomputed distance that is farther off than this belongs to a triangle seen edge-on, and Embree's is kept.
-constexpr double max_correction_m = 0.05;
-
-using Cell = std::array<long, 3>;
 
 Cell cell_of(const Eigen::Vector3d& p) {
   return {std::lround(p.x() / base_grid_m), std::lround(p.y() / base_grid_m), std::lround(p.z() / base_grid_m)};
@@ -56,63 +45,7 @@ std::string choose_isa(bool fast) {
       "this processor has no AVX2, which reproducible recordings are pinned to; --fast takes what there is");
 }
 
-struct Frame {
-  Eigen::Matrix3d R;
-  Vector3d p;
-};
-
-Frame frame_of(const SE3& T) {
-  return {T.linear(), T.translation()};
-}
-
-struct MeshData {
-  EmbreeScene scene;  // of what actors carry; null for scenery
-  std::vector<TrianglePlane> planes;
-};
-
 }  // namespace
-
-void Rays::resize(std::size_t n) {
-  for (std::vector<double>* v : {&ox, &oy, &oz, &dx, &dy, &dz}) v->resize(n);
-  t_ns.resize(n);
-}
-
-void Hits::resize(std::size_t n) {
-  t_m.resize(n);
-  for (std::vector<float>* v : {&nx, &ny, &nz, &cos_incidence}) v->resize(n);
-  instance.resize(n);
-  material.resize(n);
-}
-
-struct Tracer::State {
-  std::shared_ptr<const scenes::Scene> scene;
-  std::string isa;
-  Device device;
-  std::vector<MeshData> meshes;
-  std::vector<Frame> T_parent_mesh;  // of each instance
-  std::mutex mutex;
-  std::map<Cell, EmbreeScene> static_scenes;  // built when a sweep first starts in the cell, kept
-
-  RTCScene static_scene(const Cell& cell);
-  bool may_meet(const scenes::Actor& actor, Time begin, Time end, const Eigen::Vector3d& origin, double reach_m) const;
-};
-
-struct SweepTracer::State {
-  Tracer::State* tracer = nullptr;
-  Eigen::Vector3d base = Eigen::Vector3d::Zero();
-  Time begin;
-  double span_ns = 1;
-  float reach_m = 0;
-  RTCScene static_scene = nullptr;
-  EmbreeScene moving_scene;  // null when no actor is in range
-  std::size_t actors = 0;
-
-  using PoseCache = std::unordered_map<std::uint64_t, Frame>;  // by instance and time
-  void load(const Rays& rays, std::span<const std::uint32_t> lanes, RTCRayHit16& packet, int* valid) const;
-  void finish(const Rays& rays, const RTCRayHit16& packet, std::size_t lane, std::size_t i, PoseCache& poses,
-              Hits& hits) const;
-  const Frame& T_world_mesh(std::uint32_t id, std::int32_t t_ns, PoseCache& poses) const;
-};
 
 RTCScene Tracer::State::static_scene(const Cell& cell) {
   const std::lock_guard lock(mutex);
@@ -142,6 +75,31 @@ bool Tracer::State::may_meet(const scenes::Actor& actor, Time begin, Time end, c
   return (0.5 * (p0 + p1) - origin).norm() < reach_m + radius;
 }
 
+namespace {
+
+StaticTriangles static_triangles(const scenes::Scene& scene, const std::vector<MeshData>& meshes,
+                                 const std::vector<Frame>& T_world_mesh) {
+  StaticTriangles still;
+  still.planes.push_back({Vector3d::Zero(), 0});
+  still.surface.push_back(0);
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const scenes::Instance& instance = scene.instances[i];
+    still.first.push_back(instance.actor >= 0 ? 0 : static_cast<std::uint32_t>(still.planes.size()));
+    if (instance.actor >= 0) continue;
+    for (const TrianglePlane& plane : meshes[instance.mesh].planes) {
+      const Vector3d normal = T_world_mesh[i].R * plane.normal;
+      still.planes.push_back({normal, plane.offset_m + normal.dot(T_world_mesh[i].p)});
+    }
+    for (const std::uint16_t material : scene.meshes[instance.mesh].materials) {
+      const bool relief = scene.relief != nullptr && scene.materials[material].has_relief;
+      still.surface.push_back(material | (relief ? StaticTriangles::relief_bit : 0u));
+    }
+  }
+  return still;
+}
+
+}  // namespace
+
 Tracer::Tracer(std::shared_ptr<const scenes::Scene> scene, const TracerSettings& settings)
     : state_(std::make_unique<State>()) {
   check_references(*scene);
@@ -157,6 +115,7 @@ Tracer::Tracer(std::shared_ptr<const scenes::Scene> scene, const TracerSettings&
     const scenes::Mesh& mesh = state_->scene->meshes[k];
     state_->meshes.push_back({moves[k] ? mesh_scene(state_->device.get(), mesh) : nullptr, planes_of(mesh)});
   }
+  state_->still = static_triangles(*state_->scene, state_->meshes, state_->T_parent_mesh);
 }
 
 Tracer::~Tracer() = default;
@@ -215,105 +174,6 @@ const Eigen::Vector3d& SweepTracer::base() const {
 }
 std::size_t SweepTracer::actors_in_range() const {
   return state_->actors;
-}
-
-void SweepTracer::trace(const Rays& rays, std::span<const std::uint32_t> order, Hits& hits) const {
-  const State& s = *state_;
-  hits.resize(rays.size());
-  State::PoseCache poses;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  RTCRayHit16 packet;
-  alignas(64) int valid[tile];
-  for (std::size_t first = 0; first + tile <= order.size(); first += tile) {
-    const std::span<const std::uint32_t> lanes = order.subspan(first, tile);
-    s.load(rays, lanes, packet, valid);
-    rtcIntersect16(valid, s.static_scene, &context, &packet);
-    // tfar now stands at the static hit: an actor replaces it only where it is nearer.
-    if (s.moving_scene) rtcIntersect16(valid, s.moving_scene.get(), &context, &packet);
-    for (std::size_t lane = 0; lane < tile; ++lane)
-      if (lanes[lane] != no_ray) s.finish(rays, packet, lane, lanes[lane], poses, hits);
-  }
-}
-
-void SweepTracer::State::load(const Rays& rays, std::span<const std::uint32_t> lanes, RTCRayHit16& packet,
-                              int* valid) const {
-  const float per_ns = static_cast<float>(1 / span_ns);
-  for (std::size_t lane = 0; lane < tile; ++lane) {
-    const bool used = lanes[lane] != no_ray;
-    const std::size_t i = used ? lanes[lane] : lanes[0];  // a real ray in idle lanes: no stray numbers
-    valid[lane] = used ? -1 : 0;
-    packet.ray.org_x[lane] = static_cast<float>(rays.ox[i]);
-    packet.ray.org_y[lane] = static_cast<float>(rays.oy[i]);
-    packet.ray.org_z[lane] = static_cast<float>(rays.oz[i]);
-    packet.ray.dir_x[lane] = static_cast<float>(rays.dx[i]);
-    packet.ray.dir_y[lane] = static_cast<float>(rays.dy[i]);
-    packet.ray.dir_z[lane] = static_cast<float>(rays.dz[i]);
-    packet.ray.tnear[lane] = 0;
-    packet.ray.tfar[lane] = reach_m;
-    packet.ray.time[lane] = static_cast<float>(rays.t_ns[i]) * per_ns;
-    packet.ray.mask[lane] = ~0u;
-    packet.ray.id[lane] = 0;
-    packet.ray.flags[lane] = 0;
-    packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-    packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
-  }
-}
-
-const Frame& SweepTracer::State::T_world_mesh(std::uint32_t id, std::int32_t t_ns, PoseCache& poses) const {
-  const scenes::Instance& instance = tracer->scene->instances[id];
-  if (instance.actor < 0) return tracer->T_parent_mesh[id];
-  const std::uint64_t key = (static_cast<std::uint64_t>(id) << 32) | static_cast<std::uint32_t>(t_ns);
-  const auto [entry, is_new] = poses.try_emplace(key);
-  if (is_new) {
-    const scenes::Actor& actor = tracer->scene->actors[static_cast<std::size_t>(instance.actor)];
-    entry->second = frame_of(actor.motion->T_world_actor(begin + Duration(t_ns)) * instance.T_parent_mesh);
-  }
-  return entry->second;
-}
-
-void SweepTracer::State::finish(const Rays& rays, const RTCRayHit16& packet, std::size_t lane, std::size_t i,
-                                PoseCache& poses, Hits& hits) const {
-  if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
-    hits.t_m[i] = std::numeric_limits<double>::infinity();
-    hits.instance[i] = Hits::nothing;
-    hits.nx[i] = hits.ny[i] = hits.nz[i] = hits.cos_incidence[i] = 0;
-    hits.material[i] = 0;
-    return;
-  }
-  const scenes::Scene& scene = *tracer->scene;
-  const std::uint32_t actor_instance = packet.hit.instID[0][lane];
-  const std::uint32_t id = actor_instance == RTC_INVALID_GEOMETRY_ID ? packet.hit.geomID[lane] : actor_instance;
-  const std::uint32_t triangle = packet.hit.primID[lane];
-  const scenes::Instance& instance = scene.instances[id];
-  const Frame& T = T_world_mesh(id, rays.t_ns[i], poses);
-  const TrianglePlane& plane = tracer->meshes[instance.mesh].planes[triangle];
-
-  const Eigen::Vector3d o(rays.ox[i], rays.oy[i], rays.oz[i]), d(rays.dx[i], rays.dy[i], rays.dz[i]);
-  Eigen::Vector3d n = T.R * plane.normal;
-  double nd = n.dot(d);
-  double t = packet.ray.tfar[lane];
-  const double exact = (plane.offset_m + n.dot(T.p - (base + o))) / nd;
-  if (std::abs(exact - t) < max_correction_m) t = exact;  // false as well when the plane holds the ray (not a number)
-  if (nd > 0) {
-    n = -n;
-    nd = -nd;
-  }
-  double cosine = -nd;
-  const std::uint16_t material = scene.meshes[instance.mesh].materials[triangle];
-  if (scene.relief && scene.materials[material].has_relief) {
-    const ReliefHit relief = meet_relief(*scene.relief, base + o + t * d, d, n, t);
-    t = relief.t_m;
-    cosine = relief.cos_incidence;
-  }
-  hits.t_m[i] = t;
-  hits.nx[i] = static_cast<float>(n.x());
-  hits.ny[i] = static_cast<float>(n.y());
-  hits.nz[i] = static_cast<float>(n.z());
-  hits.cos_incidence[i] = static_cast<float>(std::min(1.0, cosine));
-  hits.instance[i] = id;
-  hits.material[i] = material;
 }
 
 }  // namespace tarmac::sim::raycast

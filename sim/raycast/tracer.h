@@ -44,6 +44,27 @@ struct Hits {
   void resize(std::size_t n);
 };
 
+/// Rays packed as Embree takes them, for timing Embree alone: the same tiles, scenes and misses as SweepTracer::trace.
+/// Lives no longer than the SweepTracer that packed it.
+class PackedTiles {
+ public:
+  PackedTiles(PackedTiles&&) noexcept;
+  PackedTiles& operator=(PackedTiles&&) noexcept;
+  ~PackedTiles();
+  std::size_t rays() const;
+  /// Forgets the hits; needed before every intersect().
+  void reset();
+  void intersect();
+  /// How many rays met something in the last intersect().
+  std::size_t hits() const;
+
+ private:
+  friend class SweepTracer;
+  PackedTiles();
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 /// Traces the rays of one sweep. Cheap to make, one a sweep; const and usable by one thread at a time.
 class SweepTracer {
  public:
@@ -57,8 +78,10 @@ class SweepTracer {
   /// Where rays' origins count from [m, world].
   const Eigen::Vector3d& base() const;
   /// Traces rays tile by tile: `order` holds tiles of 16 indices into `rays`, neighbours in direction together (that is
-  /// what makes packets fast); `no_ray` fills up a tile. Rays that `order` leaves out keep the hit they had.
+  /// what makes packets fast); `no_ray` fills up a tile. Rays that `order` leaves out meet nothing.
   void trace(const Rays& rays, std::span<const std::uint32_t> order, Hits& hits) const;
+  /// The rays of trace(), packed.
+  PackedTiles pack(const Rays& rays, std::span<const std::uint32_t> order) const;
   /// How many actors are near enough to be met.
   std::size_t actors_in_range() const;
 

@@ -51,6 +51,26 @@ Estimate bent(const Drive& drive) {
                       {.C_right = pose({0.3, 0.1, 0}, {0, 0, 0.02}), .yaw_rate_error_rad_s = 0.03});
 }
 
+/// East at 8 m/s, with a deceleration from some instant on.
+class Braking final : public SmoothTrajectory {
+ public:
+  Braking(Time from, double deceleration_m_s2) : from_(from), deceleration_m_s2_(deceleration_m_s2) {}
+  Time begin() const override { return Time{}; }
+  Time end() const override { return time_from_s(10); }
+  Kinematics at(Time t) const override {
+    const double s = to_s(t - Time{}), braked_s = std::max(0.0, to_s(t - from_));
+    Kinematics k;
+    k.T_world_body.translation().x() = 8 * s - 0.5 * deceleration_m_s2_ * braked_s * braked_s;
+    k.v_world.x() = 8 - deceleration_m_s2_ * braked_s;
+    k.a_world.x() = braked_s > 0 ? -deceleration_m_s2_ : 0;
+    return k;
+  }
+
+ private:
+  Time from_;
+  double deceleration_m_s2_;
+};
+
 /// Equal to the last bit, NaN included.
 bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
@@ -210,6 +230,34 @@ TEST_F(EvaluationTest, TheMapSampleIsEvenAndHoldsEachPointsOwnError) {
   }
   const Evaluation few = drive.evaluate(estimate, {.map_points = 36});
   EXPECT_EQ(few.map.p_world_m.size(), 36u);  // one of every 8 points
+}
+
+/// An estimate that stretches the path bends every sweep; brakes count from the sweep whose middle they reach.
+TEST_F(EvaluationTest, DeskewErrorUnderBrakingIsThatOfTheSweepsThatBrake) {
+  const DriveShape shape{.sweeps = 20};
+  const auto row_of = [&](const std::shared_ptr<const SmoothTrajectory>& motion) {
+    const Drive drive = make_drive(motion, shape, [&](int k) {
+      return box(motion->pose(shape.end(k)).translation() + Eigen::Vector3d(4, 2, 1), {20, 9, 3});
+    });
+    const Estimate estimate = make_control(drive.truth, drive.source(), {.speed_scale = 1.05});
+    const Evaluation e = drive.evaluate(estimate);
+    return std::pair(*e.row("deskew_error_braking_rms_m"), *e.row("deskew_error_rms_m")->value);
+  };
+  const auto always = std::make_shared<Braking>(Time{} - Duration(1), 3);
+  const auto [all, whole] = row_of(always);
+  ASSERT_TRUE(all.value);
+  EXPECT_EQ(all.status, "ok: 20 sweeps");
+  EXPECT_DOUBLE_EQ(*all.value, whole);
+
+  const Time late = shape.begin(15) + (shape.end(15) - shape.begin(15)) / 2 - Duration(1'000'000);
+  const auto some = std::make_shared<Braking>(late, 3);
+  const auto [part, mixed] = row_of(some);
+  ASSERT_TRUE(part.value);
+  EXPECT_EQ(part.status, "ok: 5 sweeps");
+  EXPECT_LT(*part.value, mixed);  // a stretched path bends a sweep less the slower it goes
+
+  const auto gentle = std::make_shared<Braking>(Time{}, 2);
+  EXPECT_FALSE(row_of(gentle).first.value);
 }
 
 TEST_F(EvaluationTest, WithoutTruthSaysWhatTheRunItselfTellsAndNothingElse) {

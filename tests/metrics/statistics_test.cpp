@@ -75,7 +75,11 @@ TEST(RowSet, KnowsUnitsAndReasonsAndRefusesUnknownNames) {
 TEST(Registry, EveryNameEndsInItsUnit) {
   for (const MetricEntry& metric : metrics()) {
     const std::string name = metric.name, unit = metric.unit;
-    const std::string ending = unit == "%" ? "_percent" : unit == "MB" ? "_mb" : unit == "1" ? "" : "_" + unit;
+    const std::string ending = unit == "%"          ? "_percent"
+                               : unit == "MB"       ? "_mb"
+                               : unit == "1"        ? ""
+                               : unit == "deg/100m" ? "_deg_per_100m"
+                                                    : "_" + unit;
     EXPECT_TRUE(name.ends_with(ending)) << name << " in " << unit;
     EXPECT_EQ(find_metric(name), &metric);
   }

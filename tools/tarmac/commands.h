@@ -67,4 +67,10 @@ struct TransferArguments {
 int import_command(const TransferArguments& arguments, const CommonArguments& common);
 int export_command(const TransferArguments& arguments, const CommonArguments& common);
 
+struct BenchArguments {
+  std::vector<std::string> benches;  ///< sim, estimators, metrics; empty = all
+};
+/// In tools/bench.
+int bench_command(const BenchArguments& arguments, const CommonArguments& common);
+
 }  // namespace tarmac::tools

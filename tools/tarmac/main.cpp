@@ -24,6 +24,7 @@ struct Arguments {
   ReportArguments report;
   DescribeArguments describe;
   TransferArguments transfer;
+  BenchArguments bench;
   std::string list_kind;
   std::function<int()> chosen;
 };
@@ -107,6 +108,10 @@ void add_commands(CLI::App& app, Arguments& a) {
       ->required();
   describe->add_option("name", a.describe.name, "its name")->required();
   describe->add_option("-o,--out", a.describe.picture, "write a picture (scene and scenario)");
+
+  CLI::App* bench = add(app, a, "bench", "what simulating, estimating and scoring cost on this machine",
+                        [&a] { return bench_command(a.bench, a.common); });
+  bench->add_option("benches", a.bench.benches, "sim, estimators, metrics (default: all)");
 
   for (const bool importing : {true, false}) {
     CLI::App* transfer = importing ? add(app, a, "import", "make a recording (or a TUM file) from another format",

@@ -1,0 +1,156 @@
+#include "metrics/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "metrics/statistics.h"
+
+namespace tarmac::metrics {
+
+namespace {
+
+constexpr std::size_t kLeastPairs = 3;
+constexpr double kSignificance = 0.05;
+
+/// log(a / b) of the pairs that have one.
+std::vector<double> log_ratios(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> logs;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    if (a[k] > 0 && b[k] > 0 && std::isfinite(a[k]) && std::isfinite(b[k])) logs.push_back(std::log(a[k] / b[k]));
+  return logs;
+}
+
+void judge(double significance, PairedComparison& c) {
+  if (c.pairs < kLeastPairs)
+    c.difference = Difference::too_few;
+  else if (c.p >= significance)
+    c.difference = Difference::not_significant;
+  else
+    c.difference = c.ratio < 1 ? Difference::lower : Difference::higher;
+}
+
+/// Headline values of one estimator by seed.
+std::map<std::uint64_t, double> values_of(const std::vector<const Evaluation*>& evaluations,
+                                          const std::string& estimator, const std::string& metric) {
+  std::map<std::uint64_t, double> values;
+  for (const Evaluation* e : evaluations) {
+    if (e->estimator != estimator || e->status != "ok") continue;
+    const Row* row = e->row(metric);
+    if (!row || !row->value) row = e->row(metric, "final");
+    if (row && row->value) values[e->seed] = *row->value;
+  }
+  return values;
+}
+
+PairedComparison compare_two(const std::vector<const Evaluation*>& evaluations, const std::string& a,
+                             const std::string& b, const std::string& metric) {
+  const auto of_a = values_of(evaluations, a, metric), of_b = values_of(evaluations, b, metric);
+  std::vector<double> values_a, values_b;
+  for (const auto& [seed, value] : of_a)
+    if (const auto found = of_b.find(seed); found != of_b.end()) {
+      values_a.push_back(value);
+      values_b.push_back(found->second);
+    }
+  PairedComparison c = compare_paired(values_a, values_b);
+  c.a = a;
+  c.b = b;
+  c.metric = metric;
+  return c;
+}
+
+/// Holm 1979: the smallest p against significance / n, the next against significance / (n - 1), until one fails.
+void judge_by_holm(std::vector<PairedComparison>& comparisons) {
+  std::vector<PairedComparison*> order;
+  for (PairedComparison& c : comparisons)
+    if (c.pairs >= kLeastPairs) order.push_back(&c);
+  std::stable_sort(order.begin(), order.end(), [](const auto* x, const auto* y) { return x->p < y->p; });
+  bool holds = true;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const double level = kSignificance / static_cast<double>(order.size() - k);
+    holds = holds && order[k]->p < level;
+    judge(holds ? std::numeric_limits<double>::infinity() : 0, *order[k]);
+  }
+}
+
+}  // namespace
+
+const char* name_of(Difference difference) {
+  switch (difference) {
+    case Difference::lower:
+      return "lower";
+    case Difference::higher:
+      return "higher";
+    case Difference::not_significant:
+      return "not_significant";
+    case Difference::too_few:
+      return "too_few";
+  }
+  return "unknown";
+}
+
+PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, double significance) {
+  if (a.size() != b.size()) throw std::invalid_argument("compare_paired: the two lists belong together in pairs");
+  const std::vector<double> logs = log_ratios(a, b);
+  PairedComparison c;
+  c.pairs = logs.size();
+  c.a_lower = static_cast<std::size_t>(std::count_if(logs.begin(), logs.end(), [](double d) { return d < 0; }));
+  c.low = 0;
+  c.high = std::numeric_limits<double>::infinity();
+  if (logs.empty()) return c;
+  const double centre = mean(logs);
+  c.ratio = std::exp(centre);
+  if (c.pairs < kLeastPairs) return c;
+  double squares = 0;
+  for (const double d : logs) squares += (d - centre) * (d - centre);
+  const double n = static_cast<double>(c.pairs), error = std::sqrt(squares / (n - 1) / n);
+  const boost::math::students_t distribution(n - 1);
+  const double half_width = error * boost::math::quantile(distribution, 0.975);
+  c.low = std::exp(centre - half_width);
+  c.high = std::exp(centre + half_width);
+  if (error > 0)
+    c.p = 2 * boost::math::cdf(boost::math::complement(distribution, std::abs(centre) / error));
+  else
+    c.p = centre == 0 ? 1 : 0;  // the same ratio on every seed
+  judge(significance, c);
+  return c;
+}
+
+std::vector<PairedComparison> compare_all(const std::vector<const Evaluation*>& evaluations,
+                                          const std::string& metric) {
+  std::vector<std::string> names;
+  for (const Evaluation* e : evaluations)
+    if (std::find(names.begin(), names.end(), e->estimator) == names.end()) names.push_back(e->estimator);
+  std::vector<PairedComparison> comparisons;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t j = i + 1; j < names.size(); ++j)
+      comparisons.push_back(compare_two(evaluations, names[i], names[j], metric));
+  judge_by_holm(comparisons);
+  return comparisons;
+}
+
+std::string in_words(const PairedComparison& c) {
+  switch (c.difference) {
+    case Difference::lower:
+    case Difference::higher:
+      return fmt::format("{}'s {} is {:.3g} times {}'s (95 % interval {:.3g} to {:.3g}, lower on {} of {} seeds)", c.a,
+                         c.metric, c.ratio, c.b, c.low, c.high, c.a_lower, c.pairs);
+    case Difference::not_significant:
+      return fmt::format(
+          "{} and {} do not differ significantly in {} (ratio {:.3g}, 95 % interval {:.3g} to {:.3g}, "
+          "{} seeds{})",
+          c.a, c.b, c.metric, c.ratio, c.low, c.high, c.pairs,
+          c.p < kSignificance ? "; several pairs were tested" : "");
+    case Difference::too_few:
+      break;
+  }
+  return fmt::format("{} and {} cannot be compared in {}: {} seeds with both, at least {} are needed", c.a, c.b,
+                     c.metric, c.pairs, kLeastPairs);
+}
+
+}  // namespace tarmac::metrics

@@ -1,0 +1,48 @@
+/// Two estimators on the same seeds: is the difference more than chance?
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "metrics/evaluation.h"
+
+namespace tarmac::metrics {
+
+enum class Difference : std::uint8_t {
+  lower,            ///< a is lower than b: the interval lies below 1
+  higher,           ///< a is higher than b
+  not_significant,  ///< the interval holds 1
+  too_few,          ///< fewer than 3 seeds where both have a value above 0
+};
+const char* name_of(Difference difference);
+
+/// Of one metric, over the seeds where both estimators have a value above 0. Noise multiplies errors rather than adds
+/// to them, so the difference of logarithms is what is averaged: ratio = exp(mean log(a / b)), with Student's interval.
+/// The same scenario and seed give both the same recording: what a hard seed does to both cancels.
+struct PairedComparison {
+  std::string a, b;  ///< estimators
+  std::string metric;
+  std::size_t pairs = 0;
+  std::size_t a_lower = 0;   ///< seeds on which a's value is lower
+  double ratio = 1;          ///< of a to b, geometric mean
+  double low = 0, high = 0;  ///< 95 % interval of the ratio; 0 and infinity when too few
+  double p = 1;              ///< two-sided, of the hypothesis ratio = 1
+  Difference difference = Difference::too_few;
+};
+
+/// `a` and `b` in pairs, one a seed; a pair with a value that is not above 0 (or not finite) is left out. Throws
+/// std::invalid_argument when they differ in length. `significance`: below this p a difference is called one.
+PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, double significance = 0.05);
+
+/// Every pair of estimators by one metric's headline row (causal, or final for a batch method); runs that are not ok
+/// are left out. With more than one pair of estimators `significance` is shared out by Holm's rule, which holds the
+/// chance of any false claim at 5 %. Pairs come in the order of the estimators' first appearance.
+std::vector<PairedComparison> compare_all(const std::vector<const Evaluation*>& evaluations, const std::string& metric);
+
+/// "ct-icp's deskew_error_rms_m is 0.82 times kiss-icp's (95 % interval 0.79 to 0.86, lower on 5 of 5 seeds)" or
+/// "... do not differ significantly (ratio ..., n seeds)".
+std::string in_words(const PairedComparison& comparison);
+
+}  // namespace tarmac::metrics

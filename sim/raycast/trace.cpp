@@ -1,0 +1,310 @@
+// Rays through Embree and what is made of its hits.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/vector_loop.h"
+#include "sim/raycast/tracer_state.h"
+
+namespace tarmac::sim::raycast {
+namespace {
+
+using core::Duration;
+using Eigen::Vector3d;
+
+constexpr std::size_t tile = SweepTracer::tile;
+// Embree's own distance is off by its rounding and by the motion steps, both divided by the cosine of incidence; a
+// recomputed distance that is farther off than this belongs to a triangle seen edge-on, and Embree's is kept.
+constexpr double max_correction_m = 0.05;
+
+struct PackedTile {
+  RTCRayHit16 packet;
+  alignas(64) int valid[tile];
+};
+
+RTCIntersectContext coherent_context() {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  return context;
+}
+
+struct RayArrays {
+  const double *ox, *oy, *oz, *dx, *dy, *dz;
+};
+
+RayArrays arrays_of(const Rays& rays) {
+  return {rays.ox.data(), rays.oy.data(), rays.oz.data(), rays.dx.data(), rays.dy.data(), rays.dz.data()};
+}
+
+struct HitArrays {
+  double* t_m;
+  float *nx, *ny, *nz, *cos_incidence, *nd;
+};
+
+TARMAC_VECTOR_LOOP void load_rays(const std::uint32_t* lanes, const RayArrays rays, RTCRay16& ray) {
+#pragma GCC ivdep
+  for (std::size_t lane = 0; lane < tile; ++lane) {
+    const std::uint32_t i = lanes[lane];
+    ray.org_x[lane] = static_cast<float>(rays.ox[i]);
+    ray.org_y[lane] = static_cast<float>(rays.oy[i]);
+    ray.org_z[lane] = static_cast<float>(rays.oz[i]);
+    ray.dir_x[lane] = static_cast<float>(rays.dx[i]);
+    ray.dir_y[lane] = static_cast<float>(rays.dy[i]);
+    ray.dir_z[lane] = static_cast<float>(rays.dz[i]);
+  }
+}
+
+/// Where each ray meets its plane. `planes` holds x, y, z of the normals and the offsets n'x, in the world; base is
+/// where the rays' origins count from.
+TARMAC_VECTOR_LOOP void meet_planes(std::size_t count, const RayArrays rays, const double* __restrict base,
+                                    const double* __restrict planes, const float* __restrict t_embree_m,
+                                    const HitArrays hits) {
+  const double bx = base[0], by = base[1], bz = base[2];
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < count; ++k) {
+    const double nx = planes[4 * k], ny = planes[4 * k + 1], nz = planes[4 * k + 2], offset = planes[4 * k + 3];
+    const double nd = nx * rays.dx[k] + ny * rays.dy[k] + nz * rays.dz[k];
+    const double from_plane = offset - (nx * (bx + rays.ox[k]) + ny * (by + rays.oy[k]) + nz * (bz + rays.oz[k]));
+    // The comparison is false as well when the plane holds the ray, or when there is none (not a number).
+    const double embree = static_cast<double>(t_embree_m[k]), exact = from_plane / nd, off = exact - embree;
+    const double size = off < 0 ? -off : off;
+    hits.t_m[k] = size < max_correction_m ? exact : embree;
+    const float turn = nd > 0 ? -1.0f : 1.0f;
+    const float turned = turn * static_cast<float>(nd), cosine = 0.0f - turned;
+    hits.nd[k] = turned;
+    hits.cos_incidence[k] = cosine > 1 ? 1 : cosine;
+    hits.nx[k] = turn * static_cast<float>(nx);
+    hits.ny[k] = turn * static_cast<float>(ny);
+    hits.nz[k] = turn * static_cast<float>(nz);
+  }
+}
+
+}  // namespace
+
+void Rays::resize(std::size_t n) {
+  for (std::vector<double>* v : {&ox, &oy, &oz, &dx, &dy, &dz}) v->resize(n);
+  t_ns.resize(n);
+}
+
+void Hits::resize(std::size_t n) {
+  t_m.resize(n);
+  for (std::vector<float>* v : {&nx, &ny, &nz, &cos_incidence}) v->resize(n);
+  instance.resize(n);
+  material.resize(n);
+}
+
+void TraceScratch::resize(std::size_t rays) {
+  triangle.assign(rays, 0);
+  t_embree_m.assign(rays, std::numeric_limits<float>::infinity());
+  planes.resize(rays);
+  nd.resize(rays);
+  surface.resize(rays);
+  moving.clear();
+  relief_rays.clear();
+  relief.clear();
+  relief.reserve(rays);
+}
+
+void SweepTracer::trace(const Rays& rays, std::span<const std::uint32_t> order, Hits& hits) const {
+  State& s = *state_;
+  hits.resize(rays.size());
+  std::fill(hits.instance.begin(), hits.instance.end(), Hits::nothing);
+  s.scratch.resize(rays.size());
+  RTCIntersectContext context = coherent_context();
+  // A few tiles at a time: packed, traced, kept. One by one, Embree would wait for the packing's stores to land.
+  constexpr std::size_t group = 8;
+  PackedTile tiles[group];
+  for (PackedTile& t : tiles) s.set_up(t.packet);
+  const std::size_t count = order.size() / tile;
+  for (std::size_t first = 0; first < count; first += group) {
+    const std::size_t here = std::min(group, count - first);
+    for (std::size_t k = 0; k < here; ++k)
+      s.load(rays, order.subspan((first + k) * tile, tile), tiles[k].packet, tiles[k].valid);
+    for (std::size_t k = 0; k < here; ++k) {
+      rtcIntersect16(tiles[k].valid, s.static_scene, &context, &tiles[k].packet);
+      // tfar now stands at the static hit: an actor replaces it only where it is nearer.
+      if (s.moving_scene) rtcIntersect16(tiles[k].valid, s.moving_scene.get(), &context, &tiles[k].packet);
+    }
+    for (std::size_t k = 0; k < here; ++k) s.keep(order.subspan((first + k) * tile, tile), tiles[k].packet, hits);
+  }
+  s.finish_static(rays, hits);
+  s.finish_moving(rays, hits);
+}
+
+struct PackedTiles::State {
+  RTCScene static_scene = nullptr, moving_scene = nullptr;
+  float reach_m = 0;
+  std::vector<PackedTile> tiles;
+  std::size_t rays = 0;
+};
+
+PackedTiles::PackedTiles() : state_(std::make_unique<State>()) {}
+PackedTiles::PackedTiles(PackedTiles&&) noexcept = default;
+PackedTiles& PackedTiles::operator=(PackedTiles&&) noexcept = default;
+PackedTiles::~PackedTiles() = default;
+
+std::size_t PackedTiles::rays() const {
+  return state_->rays;
+}
+
+void PackedTiles::reset() {
+  for (PackedTile& t : state_->tiles)
+    for (std::size_t lane = 0; lane < SweepTracer::tile; ++lane) {
+      t.packet.ray.tfar[lane] = state_->reach_m;
+      t.packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+      t.packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
+void PackedTiles::intersect() {
+  RTCIntersectContext context = coherent_context();
+  for (PackedTile& t : state_->tiles) {
+    rtcIntersect16(t.valid, state_->static_scene, &context, &t.packet);
+    if (state_->moving_scene) rtcIntersect16(t.valid, state_->moving_scene, &context, &t.packet);
+  }
+}
+
+std::size_t PackedTiles::hits() const {
+  std::size_t count = 0;
+  for (const PackedTile& t : state_->tiles)
+    for (std::size_t lane = 0; lane < SweepTracer::tile; ++lane)
+      count += t.valid[lane] != 0 && t.packet.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+  return count;
+}
+
+PackedTiles SweepTracer::pack(const Rays& rays, std::span<const std::uint32_t> order) const {
+  PackedTiles packed;
+  PackedTiles::State& p = *packed.state_;
+  p.static_scene = state_->static_scene;
+  p.moving_scene = state_->moving_scene.get();
+  p.reach_m = state_->reach_m;
+  p.tiles.resize(order.size() / tile);
+  for (std::size_t k = 0; k < p.tiles.size(); ++k) {
+    state_->set_up(p.tiles[k].packet);
+    state_->load(rays, order.subspan(k * tile, tile), p.tiles[k].packet, p.tiles[k].valid);
+    for (const int valid : p.tiles[k].valid) p.rays += valid != 0;
+  }
+  return packed;
+}
+
+/// What Embree leaves as it is.
+void SweepTracer::State::set_up(RTCRayHit16& packet) const {
+  std::fill_n(packet.ray.tnear, tile, 0.0f);
+  std::fill_n(packet.ray.mask, tile, ~0u);
+  std::fill_n(packet.ray.id, tile, 0u);
+  std::fill_n(packet.ray.flags, tile, 0u);
+}
+
+void SweepTracer::State::load(const Rays& rays, std::span<const std::uint32_t> lanes, RTCRayHit16& packet,
+                              int* valid) const {
+  const float per_ns = static_cast<float>(1 / span_ns);
+  std::uint32_t ray[tile];
+  for (std::size_t lane = 0; lane < tile; ++lane) {
+    const bool used = lanes[lane] != no_ray;
+    valid[lane] = used ? -1 : 0;
+    ray[lane] = used ? lanes[lane] : lanes[0];  // a real ray in idle lanes: no stray numbers
+    packet.ray.time[lane] = static_cast<float>(rays.t_ns[ray[lane]]) * per_ns;
+  }
+  load_rays(ray, arrays_of(rays), packet.ray);
+  std::fill_n(packet.ray.tfar, tile, reach_m);
+  std::fill_n(packet.hit.geomID, tile, RTC_INVALID_GEOMETRY_ID);
+  std::fill_n(packet.hit.instID[0], tile, RTC_INVALID_GEOMETRY_ID);
+}
+
+void SweepTracer::State::keep(std::span<const std::uint32_t> lanes, const RTCRayHit16& packet, Hits& hits) {
+  for (std::size_t lane = 0; lane < tile; ++lane) {
+    const std::uint32_t i = lanes[lane], id = packet.hit.geomID[lane], triangle = packet.hit.primID[lane];
+    if (i == no_ray || id == RTC_INVALID_GEOMETRY_ID) continue;
+    const std::uint32_t carried = packet.hit.instID[0][lane];
+    if (carried == RTC_INVALID_GEOMETRY_ID) {
+      const std::uint32_t row = tracer->still.first[id] + triangle;
+      // Wanted when all tiles are traced; fetched while Embree works on the next.
+      __builtin_prefetch(&tracer->still.planes[row]);
+      __builtin_prefetch(&tracer->still.surface[row]);
+      hits.instance[i] = id;
+      scratch.triangle[i] = row;
+      scratch.t_embree_m[i] = packet.ray.tfar[lane];
+    } else {
+      scratch.moving.push_back({i, carried, triangle, packet.ray.tfar[lane]});
+    }
+  }
+}
+
+void SweepTracer::State::finish_static(const Rays& rays, Hits& hits) {
+  const StaticTriangles& still = tracer->still;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t triangle = scratch.triangle[i], surface = still.surface[triangle];
+    scratch.planes[i] = still.planes[triangle];
+    scratch.surface[i] = surface;
+    hits.material[i] = static_cast<std::uint16_t>(surface);
+  }
+  static_assert(sizeof(TrianglePlane) == 4 * sizeof(double));
+  meet_planes(
+      rays.size(), arrays_of(rays), base.data(), scratch.planes.front().normal.data(), scratch.t_embree_m.data(),
+      {hits.t_m.data(), hits.nx.data(), hits.ny.data(), hits.nz.data(), hits.cos_incidence.data(), scratch.nd.data()});
+  if (!tracer->scene->relief) return;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if ((scratch.surface[i] & StaticTriangles::relief_bit) == 0 || !ReliefBatch::applies(scratch.nd[i])) continue;
+    const double t = hits.t_m[i];
+    scratch.relief.push_back(base.x() + rays.ox[i] + t * rays.dx[i], base.y() + rays.oy[i] + t * rays.dy[i],
+                             static_cast<float>(rays.dx[i]), static_cast<float>(rays.dy[i]), hits.nx[i], hits.ny[i],
+                             hits.nz[i], scratch.nd[i]);
+    scratch.relief_rays.push_back(static_cast<std::uint32_t>(i));
+  }
+  scratch.relief.solve(*tracer->scene->relief);
+  for (std::size_t k = 0; k < scratch.relief_rays.size(); ++k) {
+    const std::uint32_t i = scratch.relief_rays[k];
+    hits.t_m[i] += static_cast<double>(scratch.relief.s_m()[k]);
+    hits.cos_incidence[i] = scratch.relief.cos_incidence()[k];
+  }
+}
+
+const Frame& SweepTracer::State::T_world_mesh(std::uint32_t id, std::int32_t t_ns, PoseCache& poses) const {
+  const scenes::Instance& instance = tracer->scene->instances[id];
+  if (instance.actor < 0) return tracer->T_parent_mesh[id];
+  const std::uint64_t key = (static_cast<std::uint64_t>(id) << 32) | static_cast<std::uint32_t>(t_ns);
+  const auto [entry, is_new] = poses.try_emplace(key);
+  if (is_new) {
+    const scenes::Actor& actor = tracer->scene->actors[static_cast<std::size_t>(instance.actor)];
+    entry->second = frame_of(actor.motion->T_world_actor(begin + Duration(t_ns)) * instance.T_parent_mesh);
+  }
+  return entry->second;
+}
+
+void SweepTracer::State::finish_moving(const Rays& rays, Hits& hits) {
+  PoseCache poses;
+  const scenes::Scene& scene = *tracer->scene;
+  for (const TraceScratch::Moving& met : scratch.moving) {
+    const std::uint32_t i = met.ray;
+    const scenes::Instance& instance = scene.instances[met.instance];
+    const Frame& T = T_world_mesh(met.instance, rays.t_ns[i], poses);
+    const TrianglePlane& plane = tracer->meshes[instance.mesh].planes[met.triangle];
+    const Vector3d o(rays.ox[i], rays.oy[i], rays.oz[i]), d(rays.dx[i], rays.dy[i], rays.dz[i]);
+    Vector3d n = T.R * plane.normal;
+    double nd = n.dot(d);
+    double t = met.t_m;
+    const double exact = (plane.offset_m + n.dot(T.p - (base + o))) / nd;
+    if (std::abs(exact - t) < max_correction_m) t = exact;  // false as well when the plane holds the ray
+    if (nd > 0) {
+      n = -n;
+      nd = -nd;
+    }
+    double cosine = -nd;
+    const std::uint16_t material = scene.meshes[instance.mesh].materials[met.triangle];
+    if (scene.relief && scene.materials[material].has_relief) {
+      const ReliefHit relief = meet_relief(*scene.relief, base + o + t * d, d, n, t);
+      t = relief.t_m;
+      cosine = relief.cos_incidence;
+    }
+    hits.t_m[i] = t;
+    hits.nx[i] = static_cast<float>(n.x());
+    hits.ny[i] = static_cast<float>(n.y());
+    hits.nz[i] = static_cast<float>(n.z());
+    hits.cos_incidence[i] = static_cast<float>(std::min(1.0, cosine));
+    hits.instance[i] = met.instance;
+    hits.material[i] = material;
+  }
+}
+
+}  // namespace tarmac::sim::raycast

@@ -1,0 +1,113 @@
+// Paired comparison of two estimators over seeds.
+#include "metrics/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.h"
+
+namespace tarmac::metrics {
+namespace {
+
+Evaluation run(const std::string& estimator, std::uint64_t seed, double value) {
+  Evaluation e;
+  e.estimator = estimator;
+  e.seed = seed;
+  Row& row = e.rows.emplace_back();
+  row.metric = "deskew_error_rms_m";
+  row.value = value;
+  return e;
+}
+
+std::vector<const Evaluation*> pointers(const std::vector<Evaluation>& list) {
+  std::vector<const Evaluation*> out;
+  for (const Evaluation& e : list) out.push_back(&e);
+  return out;
+}
+
+/// Log ratios 0.1, 0.2, 0.3: mean 0.2, standard error 0.1 / sqrt(3); Student's t(0.975; 2) = 4.302653 (tables).
+TEST(ComparePaired, MatchesTheHandComputedInterval) {
+  const PairedComparison c = compare_paired({std::exp(0.1), 2 * std::exp(0.2), 7 * std::exp(0.3)}, {1, 2, 7});
+  const double half = 4.302652729911275 * 0.1 / std::sqrt(3.0);
+  EXPECT_EQ(c.pairs, 3U);
+  EXPECT_EQ(c.a_lower, 0U);
+  EXPECT_NEAR(c.ratio, std::exp(0.2), 1e-12);
+  EXPECT_NEAR(c.low, std::exp(0.2 - half), 1e-9);
+  EXPECT_NEAR(c.high, std::exp(0.2 + half), 1e-9);
+  // t = 2 sqrt(3) with 2 degrees of freedom: p = 1 - t / sqrt(2 + t^2).
+  const double t = 2 * std::sqrt(3.0);
+  EXPECT_NEAR(c.p, 1 - t / std::sqrt(2 + t * t), 1e-12);
+  EXPECT_EQ(c.difference, Difference::not_significant);
+}
+
+TEST(ComparePaired, ASteadyDifferenceIsOneAndSidesSwapWithTheOrder) {
+  const std::vector<double> a = {0.9, 1.8, 2.73, 3.5, 4.6}, b = {1, 2, 3, 4, 5};
+  EXPECT_EQ(compare_paired(a, b).difference, Difference::lower);
+  EXPECT_EQ(compare_paired(b, a).difference, Difference::higher);
+  EXPECT_EQ(compare_paired(a, b).a_lower, 5U);
+  EXPECT_NEAR(compare_paired(a, b).ratio * compare_paired(b, a).ratio, 1, 1e-12);
+  EXPECT_EQ(compare_paired(b, b).difference, Difference::not_significant);
+}
+
+TEST(ComparePaired, TwoSeedsSayNothingAndZeroesAreLeftOut) {
+  EXPECT_EQ(compare_paired({1, 1}, {2, 2}).difference, Difference::too_few);
+  const PairedComparison c = compare_paired({0, 1, std::nan(""), 1, 1}, {1, 2, 3, 0, 2});
+  EXPECT_EQ(c.pairs, 2U);
+  EXPECT_THROW(compare_paired({1}, {1, 2}), std::invalid_argument);
+}
+
+/// Two methods alike: over many experiments of 5 seeds, 5 % are called different by chance.
+TEST(ComparePaired, CallsEqualMethodsDifferentAsOftenAsItSays) {
+  constexpr int kExperiments = 4000;
+  int claims = 0;
+  for (int k = 0; k < kExperiments; ++k) {
+    const core::RandomStream stream(static_cast<std::uint64_t>(k), "test/compare");
+    std::vector<double> a, b;
+    for (std::uint64_t s = 0; s < 5; ++s) {
+      const double seed_effect = stream.normal(s, 0);
+      a.push_back(std::exp(seed_effect + 0.1 * stream.normal(s, 1)));
+      b.push_back(std::exp(seed_effect + 0.1 * stream.normal(s, 2)));
+    }
+    claims += compare_paired(a, b).difference != Difference::not_significant;
+  }
+  const double sigma = std::sqrt(kExperiments * 0.05 * 0.95);
+  EXPECT_NEAR(claims, kExperiments * 0.05, 4 * sigma);
+}
+
+TEST(CompareAll, PairsSeedsAndLeavesOutFailedRuns) {
+  std::vector<Evaluation> list;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    list.push_back(run("a", seed, 0.9 * static_cast<double>(seed)));
+    list.push_back(run("b", 6 - seed, 1.0 * static_cast<double>(6 - seed)));  // in another order
+  }
+  list.back().status = "crashed";  // b, seed 1
+  const auto comparisons = compare_all(pointers(list), "deskew_error_rms_m");
+  ASSERT_EQ(comparisons.size(), 1U);
+  EXPECT_EQ(comparisons[0].a, "a");
+  EXPECT_EQ(comparisons[0].pairs, 4U);
+  EXPECT_NEAR(comparisons[0].ratio, 0.9, 1e-12);
+  EXPECT_EQ(comparisons[0].difference, Difference::lower);
+  EXPECT_NE(in_words(comparisons[0]).find("0.9 times b's"), std::string::npos);
+}
+
+/// p of (a, b) is about 0.04: enough alone, not as the smallest of three.
+TEST(CompareAll, ShareOutTheSignificanceOverSeveralPairs) {
+  const std::vector<double> wobble = {0.02, 0.08, 0.01, 0.06, 0.03};
+  std::vector<Evaluation> list;
+  for (std::uint64_t s = 0; s < 5; ++s) {
+    list.push_back(run("a", s, std::exp(wobble[s])));
+    list.push_back(run("b", s, 1));
+  }
+  EXPECT_EQ(compare_all(pointers(list), "deskew_error_rms_m")[0].difference, Difference::higher);
+  for (std::uint64_t s = 0; s < 5; ++s) list.push_back(run("c", s, std::exp(-0.5 * wobble[4 - s] + 0.02)));
+  const auto comparisons = compare_all(pointers(list), "deskew_error_rms_m");
+  ASSERT_EQ(comparisons.size(), 3U);
+  EXPECT_GT(comparisons[0].p, 0.05 / 3);
+  EXPECT_LT(comparisons[0].p, 0.05);
+  EXPECT_EQ(comparisons[0].difference, Difference::not_significant);
+  EXPECT_NE(in_words(comparisons[0]).find("do not differ significantly"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tarmac::metrics

@@ -1,0 +1,26 @@
+/// What a bench measured, and how benches are found.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/tarmac/console.h"
+
+namespace tarmac::tools {
+
+/// One figure. `metric` carries its unit in its name, `unit` says it again for readers.
+struct BenchRow {
+  std::string bench;    ///< "sim"
+  std::string variant;  ///< `case` in the output: "default", "fast"
+  std::string metric;   ///< "raw_mrays_per_s"
+  double value = 0;
+  std::string unit;  ///< "Mrays/s"
+};
+using BenchRows = std::vector<BenchRow>;
+
+/// Each runs for some seconds to a minute and throws Interrupted after Ctrl-C.
+BenchRows bench_sim(const Console& console);
+BenchRows bench_estimators(const Console& console);
+BenchRows bench_metrics(const Console& console);
+
+}  // namespace tarmac::tools
