@@ -14,8 +14,10 @@
 
 #include "core/error.h"
 #include "metrics/cost.h"
+#include "metrics/degeneracy/degeneracy.h"
 #include "metrics/drift.h"
 #include "metrics/point_error.h"
+#include "metrics/residuals.h"
 #include "metrics/trajectory_error.h"
 
 namespace tarmac::metrics {
@@ -181,13 +183,17 @@ Time time_zero(const EvaluationInput& input) {
 }
 
 /// What the run itself says, truth or no truth.
-void add_run_figures(const EvaluationInput& input, Time t_zero, RowSet& rows, std::vector<Series>& series) {
+void add_run_figures(const EvaluationInput& input, const EvaluateSettings& settings, Time t_zero, RowSet& rows,
+                     Evaluation& evaluation) {
+  std::vector<Series>& series = evaluation.series;
   std::vector<SweepEffort> effort;
   if (input.diagnostics) effort = effort_of(*input.diagnostics);
   const std::vector<SweepEffort>* known = input.diagnostics ? &effort : nullptr;
   add_cost_rows(input.timing, input.estimate, rows);
   add_effort_rows(known, rows);
   add_cost_series(input.timing, known, input.estimate, t_zero, series);
+  add_degeneracy({input.estimate, input.diagnostics, input.sweeps, input.oracle, t_zero}, {.threads = settings.threads},
+                 rows, series, evaluation.degeneracy_csv);
 }
 
 void keep_rows(const RowSet& rows, Evaluation& evaluation) {
@@ -200,6 +206,17 @@ void put_coverage(std::size_t scored, std::size_t sweeps, RowSet& rows, double& 
   rows.put("coverage_percent", 100 * coverage);
 }
 
+/// What residuals and lag say of timing. Once for the headline estimate.
+void add_timing(const EvaluationInput& input, const EvaluateSettings& settings, const std::vector<PosePair>* pairs,
+                RowSet& rows, Evaluation& evaluation) {
+  Evidence evidence = examine_residuals(input, settings, rows, evaluation.series);
+  evidence.has_truth = input.truth != nullptr;
+  if (pairs)
+    evidence.lag = add_lag(*pairs, *input.truth->motion, !input.truth->faults.empty(), rows, evaluation.series);
+  const std::vector<Finding> findings = diagnose(evidence);
+  evaluation.findings.insert(evaluation.findings.end(), findings.begin(), findings.end());
+}
+
 void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& settings, const Subject& subject,
                       bool headline, Evaluation& evaluation) {
   const Time t_zero = time_zero(input);
@@ -209,7 +226,7 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
   if (headline) {
     evaluation.coverage = coverage;
     if (!input.labels->empty()) add_motion(input, t_zero, evaluation.series);
-    add_run_figures(input, t_zero, rows, evaluation.series);
+    add_run_figures(input, settings, t_zero, rows, evaluation);
   }
   if (!subject.pairs.empty()) {
     add_trajectory_rows(subject.pairs, {.gravity_aligned = input.estimate.gravity_aligned}, rows);
@@ -223,6 +240,7 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
       add_drift_series(subject.pairs, t_zero, evaluation.series);
       add_point_series(points.sweeps, points.histograms, t_zero, evaluation.series);
       gather_map(points.sweeps, evaluation.map);
+      add_timing(input, settings, &subject.pairs, rows, evaluation);
     }
   }
   rows.all_missing(subject.pairs.empty() ? "no sweep is scored"
@@ -232,7 +250,7 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
 }
 
 /// A recording from outside: what the run says of itself, and the path as estimated.
-void evaluate_alone(const EvaluationInput& input, Evaluation& evaluation) {
+void evaluate_alone(const EvaluationInput& input, const EvaluateSettings& settings, Evaluation& evaluation) {
   const Time t_zero = time_zero(input);
   RowSet rows(input.estimate.has_causal ? "causal" : "final");
   Series path{"path_estimate", "x [m]", "y [m]", {}, {}, {}, {}};
@@ -242,8 +260,9 @@ void evaluate_alone(const EvaluationInput& input, Evaluation& evaluation) {
     path.y.push_back(sweep.T_map_body.translation().y());
   }
   put_coverage(path.x.size(), input.sweeps.count, rows, evaluation.coverage);
-  add_run_figures(input, t_zero, rows, evaluation.series);
+  add_run_figures(input, settings, t_zero, rows, evaluation);
   evaluation.series.push_back(std::move(path));
+  add_timing(input, settings, nullptr, rows, evaluation);
   rows.all_missing("the recording has no truth");
   keep_rows(rows, evaluation);
 }
@@ -259,7 +278,7 @@ Evaluation evaluate(const EvaluationInput& input, const EvaluateSettings& settin
   if (input.estimate.status != RunStatus::ok) evaluation.status = name_of(input.estimate.status);
   evaluation.message = input.estimate.message;
   if (!input.truth) {
-    evaluate_alone(input, evaluation);
+    evaluate_alone(input, settings, evaluation);
     return evaluation;
   }
   if (input.estimate.has_causal || !input.estimate.has_final)

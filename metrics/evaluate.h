@@ -21,6 +21,20 @@
 ///   deskew_error_vs_time, sweep_time_vs_time, iterations_vs_time: a value a sweep
 ///
 ///   speed_vs_time, yaw_rate_vs_time: the true motion
+///
+///   residual_mean_by_phase, residual_spread_by_phase: point-to-surface residuals over the point's time in the sweep,
+///     signed mean (positive: in front of the surface) and spread, with 95 % bands from bootstrapping over sweeps
+///
+///   displacement_{forward,left,up}_by_phase: what displacement of the points in body axes those residuals imply
+///
+///   residual_slope_vs_domega, residual_slope_vs_dv and ..._fit: each sweep's slope over the change of motion in it
+///     (residual_slope.h), and the fitted line with +- 1 sigma
+///
+///   error_vs_lag: ATE with the truth taken earlier by a lag
+///
+///   and those of degeneracy/degeneracy.h
+///
+/// Findings: timing's topics (diagnosis.h).
 #pragma once
 
 #include "core/diagnostics.h"
@@ -31,6 +45,8 @@
 #include "sim/truth/ground_truth.h"
 
 namespace tarmac::metrics {
+
+struct Oracle;  // degeneracy/oracle.h
 
 struct EvaluateSettings {
   int threads = 1;
@@ -49,15 +65,18 @@ struct EvaluationInput {
   const std::vector<sim::truth::PointLabels>* labels = nullptr;  ///< one a sweep of the recording; goes with the truth
   const core::RunTiming* timing = nullptr;                       ///< nullptr: cost is n/a
   const DiagnosticsSource* diagnostics = nullptr;                ///< nullptr: what is read from them is n/a
+  const Oracle* oracle = nullptr;                                ///< nullptr: what is compared with it is n/a
 };
 
 /// All metrics: every one of the registry has a row, with a value or the reason why not. A function of the input alone:
 /// the same bytes at any number of threads. Throws InputError when truth and recording do not belong together.
 Evaluation evaluate(const EvaluationInput& input, const EvaluateSettings& settings);
 
-/// The same with labels from the truth's folder. `truth`, `timing` and `diagnostics` may be nullptr.
+/// The same with labels from the truth's folder. `truth`, `timing`, `diagnostics` and `oracle` may be nullptr; the
+/// oracle is the recording's (make_oracle), for all its estimates.
 Evaluation evaluate(const core::Estimate& estimate, const core::Recording& recording,
                     const sim::truth::GroundTruth* truth, const core::RunTiming* timing,
-                    const EvaluateSettings& settings, const DiagnosticsSource* diagnostics = nullptr);
+                    const EvaluateSettings& settings, const DiagnosticsSource* diagnostics = nullptr,
+                    const Oracle* oracle = nullptr);
 
 }  // namespace tarmac::metrics

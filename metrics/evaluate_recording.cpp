@@ -5,10 +5,10 @@ namespace tarmac::metrics {
 
 Evaluation evaluate(const core::Estimate& estimate, const core::Recording& recording,
                     const sim::truth::GroundTruth* truth, const core::RunTiming* timing,
-                    const EvaluateSettings& settings, const DiagnosticsSource* diagnostics) {
+                    const EvaluateSettings& settings, const DiagnosticsSource* diagnostics, const Oracle* oracle) {
   std::vector<sim::truth::PointLabels> labels;
   if (truth) labels = truth->labels();
-  return evaluate({estimate, sweeps_of(recording), truth, &labels, timing, diagnostics}, settings);
+  return evaluate({estimate, sweeps_of(recording), truth, &labels, timing, diagnostics, oracle}, settings);
 }
 
 }  // namespace tarmac::metrics

@@ -24,6 +24,13 @@ void RowSet::put(const std::string& metric, double value, const std::string& not
   row.status = note.empty() ? "ok" : "ok: " + note;
 }
 
+void RowSet::interval(const std::string& metric, double low, double high) {
+  Row& row = at(metric);
+  if (!row.value || !std::isfinite(low) || !std::isfinite(high)) return;
+  row.ci_low = low;
+  row.ci_high = high;
+}
+
 void RowSet::missing(const std::string& metric, const std::string& reason) {
   Row& row = at(metric);
   row.value.reset();

@@ -16,6 +16,8 @@ class RowSet {
   /// A note ("the positions lie on a line") makes the status "ok: note". NaN becomes n/a.
   /// Throws std::logic_error for a name that the registry has not.
   void put(const std::string& metric, double value, const std::string& note = "");
+  /// The interval of a value that was put. NaN leaves it out.
+  void interval(const std::string& metric, double low, double high);
   /// Status "n/a: reason".
   void missing(const std::string& metric, const std::string& reason);
   void put_or_missing(const std::string& metric, const std::optional<double>& value, const std::string& reason);

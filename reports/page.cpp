@@ -88,8 +88,8 @@ std::string assemble_page(const ReportInput& input, const Pictures& pictures) {
   html += fmt::format("<title>{} · Tarmac</title>\n<style>\n", escape_html(input.title));
   html += page_style();
   html += "</style>\n</head>\n<body>\n" + header(input);
-  html += "<div id=\"legend\"><div class=\"bar\"></div></div>\n<main>\n";
-  for (const char* id : {"summary", "top", "stills", "drift", "phase", "deskew", "timing", "outcome", "provenance"}) {
+  html += "<div id=\"legend\"><nav aria-label=\"Contents\"></nav><div class=\"bar\"></div></div>\n<main>\n";
+  for (const char* id : {"summary", "comparison", "findings", "top", "stills", "drift", "phase", "residuals", "deskew", "degeneracy", "timing", "outcome", "provenance"}) {
     html += fmt::format("<section id=\"{}\"></section>\n", id);
   }
   html += "</main>\n<script type=\"application/json\" id=\"tarmac-data\">" + page_data(input, pictures) + "</script>\n";

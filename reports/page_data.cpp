@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "metrics/registry.h"
 #include "reports/page.h"
+#include "reports/page_comparisons.h"
+#include "reports/page_series.h"
 
 namespace tarmac::reports {
 
@@ -16,33 +17,9 @@ namespace {
 using nlohmann::json;
 
 /// Series that belong to the truth: the same for every estimator of a run, so written once.
-const std::set<std::string> kTruthSeries = {"path_true", "speed_vs_time", "yaw_rate_vs_time"};
-/// Samples that a page holds at most, over all series: about 3 MB of text. Longer series are thinned.
-constexpr std::size_t kMaxSamples = 160000;
-constexpr std::size_t kMinSamplesEach = 200;
+const std::set<std::string> kTruthSeries = {"path_true", "path_degenerate", "speed_vs_time", "yaw_rate_vs_time"};
 
-/// Six significant digits: finer than any line can show, and half the size.
-json number(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
-}
-
-json thinned(const std::vector<double>& values, std::size_t step) {
-  json list = json::array();
-  for (std::size_t i = 0; i < values.size(); i += step) list.push_back(number(values[i]));
-  return list;
-}
-
-json to_json(const metrics::Series& series, std::size_t max_samples) {
-  const std::size_t step = std::max<std::size_t>(1, (series.x.size() + max_samples - 1) / max_samples);
-  json out = {{"x_label", series.x_label},    {"y_label", series.y_label},   {"step", step}, {"first", 0},
-              {"x", thinned(series.x, step)}, {"y", thinned(series.y, step)}};
-  if (!series.low.empty() && !series.high.empty()) {
-    out["low"] = thinned(series.low, step);
-    out["high"] = thinned(series.high, step);
-  }
-  return out;
-}
+bool is_of_truth(const std::string& series) { return kTruthSeries.contains(series) || series.starts_with("oracle_"); }
 
 json to_json(const metrics::Row& row) {
   json out = {{"estimate", row.estimate}, {"metric", row.metric}, {"unit", row.unit}, {"status", row.status}};
@@ -52,14 +29,6 @@ json to_json(const metrics::Row& row) {
     out["high"] = number(*row.ci_high);
   }
   return out;
-}
-
-std::size_t samples_each(const std::vector<ReportRun>& runs) {
-  std::size_t count = 0;
-  for (const auto& run : runs) {
-    for (const auto& evaluation : run.evaluations) count += evaluation.series.size();
-  }
-  return std::max(kMinSamplesEach, kMaxSamples / std::max<std::size_t>(1, count));
 }
 
 /// Where a reader finds the log: below the folder that the report was made from, never an absolute path.
@@ -80,8 +49,13 @@ void remember(std::vector<T>& list, const T& value) {
   if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
 }
 
+/// How many a written series had before it was thinned, or a few more.
+std::size_t samples(const json& series) {
+  return series["y"].size() * series["step"].get<std::size_t>();
+}
+
 void collect(const ReportInput& input, const ReportRun& run, const metrics::Evaluation& evaluation,
-             std::size_t max_samples, Collected& into) {
+             SeriesWriter& writer, Collected& into) {
   remember(into.estimators, evaluation.estimator);
   remember(into.seeds, evaluation.seed);
   json rows = json::array(), series = json::object();
@@ -92,10 +66,10 @@ void collect(const ReportInput& input, const ReportRun& run, const metrics::Eval
   json& truth = into.truth[std::to_string(evaluation.seed)];
   if (truth.is_null()) truth = json::object();
   for (const auto& entry : evaluation.series) {
-    const bool of_truth = kTruthSeries.contains(entry.name);
+    const bool of_truth = is_of_truth(entry.name);
     // A method that failed early may know less of the truth than another.
-    if (of_truth && truth.contains(entry.name) && truth[entry.name]["x"].size() >= entry.x.size()) continue;
-    (of_truth ? truth : series)[entry.name] = to_json(entry, max_samples);
+    if (of_truth && truth.contains(entry.name) && samples(truth[entry.name]) >= entry.y.size()) continue;
+    (of_truth ? truth : series)[entry.name] = writer.write(entry);
   }
   into.runs.push_back({{"estimator", evaluation.estimator},
                        {"seed", evaluation.seed},
@@ -188,10 +162,10 @@ std::string inside_script(const json& data) {
 
 std::string page_data(const ReportInput& input, const Pictures& pictures) {
   Collected collected;
-  const std::size_t max_samples = samples_each(input.runs);
+  SeriesWriter writer(longest_series(input.runs));
   json provenance = json::array();
   for (const auto& run : input.runs) {
-    for (const auto& evaluation : run.evaluations) collect(input, run, evaluation, max_samples, collected);
+    for (const auto& evaluation : run.evaluations) collect(input, run, evaluation, writer, collected);
     if (run.provenance_json.empty()) continue;
     const std::string folder = input.runs.size() > 1 ? run.folder.filename().string() : "";
     provenance.push_back({{"folder", folder}, {"text", run.provenance_json}});
@@ -203,7 +177,9 @@ std::string page_data(const ReportInput& input, const Pictures& pictures) {
                         {"seeds", collected.seeds},
                         {"metrics", metric_table(collected.metrics)},
                         {"runs", collected.runs},
+                        {"comparisons", comparisons(input.runs)},
                         {"truth", collected.truth},
+                        {"grids", writer.grids()},
                         {"pictures", to_json(pictures)},
                         {"command", command_of(input.runs)},
                         {"provenance", provenance}});

@@ -53,15 +53,16 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Over
   for (const auto& [key, value] : overrides) scenario.node.set(key, value);
   if (!scenario.node.is_block()) scenario.node.fail("a scenario is a block of `key: value` lines");
   TopLevel top{scenario};
-  scenario.node.read(top, {"scene", "motion", "rig", "estimators"});
+  scenario.node.read(top, {"scene", "motion", "rig", "faults", "estimators"});
   if (!is_kebab(scenario.name)) {
     scenario.node.fail_at("name", fmt::format("'{}' must be a name in kebab-case, such as stand-turn", scenario.name));
   }
   if (scenario.duration_s <= 0) scenario.node.fail_at("duration_s", "is missing; expected a number above 0");
-  for (auto [block, name] : {std::pair{&scenario.scene, "scene"}, std::pair{&scenario.motion, "motion"},
-                             std::pair{&scenario.rig, "rig"}, std::pair{&scenario.estimators, "estimators"}}) {
+  for (auto [block, name] :
+       {std::pair{&scenario.scene, "scene"}, std::pair{&scenario.motion, "motion"}, std::pair{&scenario.rig, "rig"},
+        std::pair{&scenario.faults, "faults"}, std::pair{&scenario.estimators, "estimators"}}) {
     *block = scenario.node.child(name);
-    const bool needed = block != &scenario.estimators;
+    const bool needed = block != &scenario.faults && block != &scenario.estimators;
     if (needed && !block->present()) scenario.node.fail_at(name, "is missing; a scenario needs scene, motion and rig");
     if (block->present() && !block->is_block()) block->fail("must be a block of `key: value` lines");
   }

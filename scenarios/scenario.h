@@ -7,11 +7,12 @@
 ///   scene: {kind: stand, ...}
 ///   motion: {kind: drive, ...}
 ///   rig: {lidar: {...}, imu: {...}}
+///   faults: {lidar: {clock_offset_ms: 5}}    # optional: what is wrong with the sensors
 ///   estimators:            # optional: options of bundled methods, and foreign programs
 ///     kiss-icp: {voxel_size_m: 1.0}
 ///     my-tool: {command: [prog, '{input}', '{output}'], frame: lidar, interpolation: se3, timeout_s: 600}
 ///
-/// The blocks scene, motion, rig and estimators are read by the modules that know them.
+/// The blocks scene, motion, rig, faults and estimators are read by the modules that know them.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +33,7 @@ struct Scenario {
   std::int64_t seed = 1;  ///< used when the command line gives none
   double duration_s = 0;
   core::ConfigNode node;  ///< the whole file, `--set` applied
-  core::ConfigNode scene, motion, rig, estimators;
+  core::ConfigNode scene, motion, rig, faults, estimators;
 
   core::Duration duration() const { return core::duration_from_s(duration_s); }
 };

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "sim/faults/fault_options.h"
 #include "sim/imu/imu_model.h"
 #include "sim/lidar/profile_file.h"
 #include "sim/rig_options.h"
@@ -85,6 +86,10 @@ std::vector<OptionDescription> describe_rig_options() {
   RigOptions options;
   options.has_imu = true;
   return describe_options(options);
+}
+
+std::vector<OptionDescription> describe_fault_options() {
+  return describe_options(faults::FaultOptions());
 }
 
 }  // namespace tarmac::sim

@@ -8,7 +8,12 @@
 #include <chrono>
 
 #include "core/error.h"
+#include "core/files.h"
 #include "core/recording.h"
+#include "sim/faults/fault_log.h"
+#include "sim/faults/fault_options.h"
+#include "sim/faults/imu_faults.h"
+#include "sim/faults/lidar_faults.h"
 #include "sim/imu/imu.h"
 #include "sim/raycast/tracer.h"
 #include "sim/rig_options.h"
@@ -51,10 +56,56 @@ std::int64_t sweeps_within(const lidar::FiringTable& firing, const SimulationInp
   return count;
 }
 
-std::size_t write_imu(const RigOptions& options, const SimulationInput& input, RecordingWriter& recording) {
+/// Options of rig and faults, and the rig as it is: the data sheet's with every mounting where it truly is.
+struct Setup {
+  RigOptions rig;
+  faults::FaultOptions faults;
+  Rig sheet, truth;
+  std::vector<truth::Fault> log;
+};
+
+Setup read_setup(const SimulationInput& input) {
+  Setup setup;
+  setup.rig = read_rig(input.rig);
+  setup.faults = faults::read_faults(input.faults, setup.rig.has_imu, setup.rig.lidar.sweep_rate_hz);
+  setup.sheet = setup.truth = data_sheet(setup.rig);
+  SE3& T_body_lidar = setup.truth.lidars[0].T_body_lidar;
+  T_body_lidar = T_body_lidar * setup.faults.lidar.extrinsic_error;
+  if (setup.rig.has_imu) {
+    SE3& T_body_imu = setup.truth.imus[0].T_body_imu;
+    T_body_imu = T_body_imu * setup.faults.imu.extrinsic_error;
+  }
+  return setup;
+}
+
+faults::LidarFaults lidar_faults(const lidar::FiringTable& firing, std::int64_t count, std::uint64_t seed,
+                                 Setup& setup) {
+  std::vector<faults::SweepStamp> sweeps;
+  std::vector<std::size_t> columns;
+  for (std::int64_t k = 0; k < count; ++k) {
+    const lidar::SweepSpan span = firing.sweep(k);
+    sweeps.push_back({span.begin, span.end});
+    columns.push_back(static_cast<std::size_t>(span.cycles));
+  }
+  faults::LidarFaults realised(setup.faults.lidar, sweeps, seed, "lidar0");
+  setup.log = faults::lidar_log(setup.faults.lidar, realised, columns, "lidar0");
+  return realised;
+}
+
+/// Samples as they are recorded, with the errors that the device had.
+SynthesizedImu make_imu(Setup& setup, const SimulationInput& input) {
+  if (!setup.rig.has_imu) return {};
   const Time end = std::min(Time(input.duration), input.motion->end());
-  const std::vector<ImuSample> samples =
-      synthesize_imu(*input.motion, options.imu, options.gravity_m_s2, Time{}, end, input.seed, "imu0");
+  ImuOptions mounted = setup.rig.imu;
+  mounted.T_body_imu = setup.truth.imus[0].T_body_imu;
+  SynthesizedImu imu = synthesize_imu(*input.motion, mounted, setup.rig.gravity_m_s2, Time{}, end, input.seed, "imu0");
+  const std::size_t lost = faults::apply_imu_faults(setup.faults.imu, input.seed, "imu0", imu.samples);
+  for (truth::Fault& fault : faults::imu_log(setup.faults.imu, lost, imu.samples.size() + lost, "imu0"))
+    setup.log.push_back(std::move(fault));
+  return imu;
+}
+
+std::size_t write_imu(const RigOptions& options, const std::vector<ImuSample>& samples, RecordingWriter& recording) {
   const std::size_t chunk = std::max<std::size_t>(1, static_cast<std::size_t>(options.imu.rate_hz));  // a second each
   for (std::size_t i = 0; i < samples.size(); i += chunk)
     recording.write(0, std::span(samples).subspan(i, std::min(chunk, samples.size() - i)));
@@ -64,7 +115,7 @@ std::size_t write_imu(const RigOptions& options, const SimulationInput& input, R
 }  // namespace
 
 void check(const SimulationInput& input) {
-  sweeps_within(firing_table(read_rig(input.rig), input.seed), input);
+  sweeps_within(firing_table(read_setup(input).rig, input.seed), input);
 }
 
 SimulationSummary simulate(const SimulationInput& input, const SimulationSettings& settings,
@@ -72,28 +123,35 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
                            const Progress& progress) {
   const Stopwatch watch;
   const int threads = std::clamp(settings.threads, 1, tbb::info::default_concurrency());
-  const RigOptions options = read_rig(input.rig);
-  const Rig rig = data_sheet(options);
+  Setup setup = read_setup(input);
+  const RigOptions& options = setup.rig;
 
   const auto tracer =
       std::make_shared<const raycast::Tracer>(input.scene, raycast::TracerSettings{threads, settings.fast});
   const lidar::SweepSimulator simulator(options.lidar.profile, firing_table(options, input.seed),
-                                        {.sensor = 0, .T_body_lidar = options.lidar.T_body_lidar}, options.lidar.noise,
-                                        input.seed, tracer, input.scene, input.motion);
+                                        {.sensor = 0, .T_body_lidar = setup.truth.lidars[0].T_body_lidar},
+                                        options.lidar.noise, input.seed, tracer, input.scene, input.motion);
   const std::int64_t count = sweeps_within(simulator.firing(), input);
 
-  RecordingWriter recording(recording_folder, rig);
-  truth::write_truth(truth_folder, input.resolved_scenario, input.resolved_motion, *input.motion, rig, {});
+  const faults::LidarFaults faults = lidar_faults(simulator.firing(), count, input.seed, setup);
+  const SynthesizedImu imu = make_imu(setup, input);
+
+  RecordingWriter recording(recording_folder, setup.sheet);
+  truth::write_truth(truth_folder, input.resolved_scenario, input.resolved_motion, *input.motion, setup.truth,
+                     setup.log);
+  std::filesystem::remove(truth_folder / "imu0_errors.json");  // of an earlier run with an IMU
+  if (options.has_imu) write_file(truth_folder / "imu0_errors.json", errors_as_json(imu.errors));
   ChunkWriter labels(truth_folder / "lidar0_labels.chunks");
+  const auto after_sweep = [&](const PipelineTotals& so_far) {
+    const double share = static_cast<double>(so_far.sweeps + so_far.lost) / static_cast<double>(count);
+    progress(share, speed_note(so_far, share * to_s(input.duration), watch.wall_s()));
+  };
   const PipelineTotals totals =
-      run_sweeps(simulator, *input.scene, count, threads, recording, labels, [&](const PipelineTotals& so_far) {
-        const double share = static_cast<double>(so_far.sweeps) / static_cast<double>(count);
-        progress(share, speed_note(so_far, share * to_s(input.duration), watch.wall_s()));
-      });
+      run_sweeps(simulator, *input.scene, count, threads, recording, labels, after_sweep, &faults);
   labels.finish();
 
   SimulationSummary summary;
-  summary.imu_samples = options.has_imu ? write_imu(options, input, recording) : 0;
+  summary.imu_samples = options.has_imu ? write_imu(options, imu.samples, recording) : 0;
   summary.recording_hash = recording.finish();
   summary.sweeps = totals.sweeps;
   summary.rays = totals.rays;
@@ -109,6 +167,13 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
 
 std::string resolve_rig(const ConfigNode& rig) {
   return write_options(read_rig(rig), 2);
+}
+
+std::string resolve_faults(const ConfigNode& faults, const ConfigNode& rig) {
+  const RigOptions options = read_rig(rig);
+  faults::FaultOptions read = faults::read_faults(faults, options.has_imu, options.lidar.sweep_rate_hz);
+  if (!faults.present()) return "";
+  return write_options_of([&](OptionVisitor& v) { read.visit(v, options.has_imu); }, 2);
 }
 
 }  // namespace tarmac::sim

@@ -23,6 +23,7 @@ struct SimulationInput {
   core::ConfigNode rig;               ///< the scenario's `rig:` block: {lidar: {...}, imu: {...}, gravity_m_s2}
   std::string resolved_scenario;      ///< stored as truth/scenario.yaml
   std::string resolved_motion;        ///< of sim::truth::resolve_motion; stored as truth/motion.yaml
+  core::ConfigNode faults;            ///< the scenario's `faults:` block; absent: nothing is wrong
 };
 
 struct SimulationSettings {
@@ -55,6 +56,8 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
 
 /// The rig block with every option written out, indented by 2. Throws InputError for bad options.
 std::string resolve_rig(const core::ConfigNode& rig);
+/// The faults block likewise, checked against the rig; empty when the block is absent.
+std::string resolve_faults(const core::ConfigNode& faults, const core::ConfigNode& rig);
 
 /// What `tarmac list` and `tarmac describe` show.
 struct CatalogueEntry {
@@ -67,5 +70,6 @@ std::vector<CatalogueEntry> imu_catalogue();
 std::string describe_lidar(const std::string& name);
 std::string describe_imu(const std::string& name);
 std::vector<core::OptionDescription> describe_rig_options();
+std::vector<core::OptionDescription> describe_fault_options();
 
 }  // namespace tarmac::sim

@@ -3,7 +3,9 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "sim/truth/ground_truth.h"
@@ -14,6 +16,8 @@ namespace {
 using namespace core;
 
 struct FinishedSweep {
+  bool lost = false;
+  Time true_begin;
   lidar::SimulatedSweep simulated;
   EncodedSweep encoded;
 };
@@ -38,14 +42,32 @@ truth::PointLabels labels_of(const lidar::SimulatedSweep& simulated, const scene
   return labels;
 }
 
+faults::Columns columns_of(const lidar::FiringTable& firing, std::int64_t index) {
+  faults::Columns columns;
+  const lidar::SweepSpan span = firing.sweep(index);
+  const Time first = firing.cycle(span, 0).t;
+  for (std::int64_t k = 0; k < span.cycles; ++k) {
+    const lidar::Cycle cycle = firing.cycle(span, k);
+    columns.begin_ns.push_back(static_cast<std::int32_t>((cycle.t - first).count()));
+    const double azimuth_deg = std::atan2(cycle.sin_azimuth, cycle.cos_azimuth) * 180 / std::numbers::pi;
+    columns.azimuth_deg.push_back(azimuth_deg < 0 ? azimuth_deg + 360 : azimuth_deg);
+  }
+  return columns;
+}
+
+EncodedSweep encode(const LidarSweep& sweep, const truth::PointLabels& labels) {
+  return {pack(RecordingWriter::chunk(sweep)), pack(truth::to_chunk(labels))};
+}
+
 }  // namespace
 
 EncodedSweep encode(const lidar::SimulatedSweep& simulated, const scenes::Scene& scene) {
-  return {pack(RecordingWriter::chunk(simulated.sweep)), pack(truth::to_chunk(labels_of(simulated, scene)))};
+  return encode(simulated.sweep, labels_of(simulated, scene));
 }
 
 PipelineTotals run_sweeps(const lidar::SweepSimulator& simulator, const scenes::Scene& scene, std::int64_t count,
-                          int threads, RecordingWriter& recording, ChunkWriter& labels, const AfterSweep& after_sweep) {
+                          int threads, RecordingWriter& recording, ChunkWriter& labels, const AfterSweep& after_sweep,
+                          const faults::LidarFaults* faults) {
   using Item = std::shared_ptr<FinishedSweep>;
   PipelineTotals totals;
   std::int64_t next = 0;
@@ -55,14 +77,26 @@ PipelineTotals run_sweeps(const lidar::SweepSimulator& simulator, const scenes::
   };
   const auto simulate = [&](std::int64_t index) -> Item {
     auto item = std::make_shared<FinishedSweep>();
+    item->lost = faults && faults->lost(index);
+    if (item->lost) return item;
     item->simulated = simulator.sweep(index);
-    item->encoded = encode(item->simulated, scene);
+    item->true_begin = item->simulated.sweep.begin;
+    truth::PointLabels point_labels = labels_of(item->simulated, scene);
+    if (faults)
+      faults->apply(item->simulated.sweep, point_labels,
+                    faults->needs_columns() ? columns_of(simulator.firing(), index) : faults::Columns());
+    item->encoded = encode(item->simulated.sweep, point_labels);
     return item;
   };
   const auto write = [&](const Item& item) {
+    if (item->lost) {
+      totals.lost += 1;
+      after_sweep(totals);
+      return;
+    }
     const LidarSweep& sweep = item->simulated.sweep;
     recording.write_packed(sweep, item->encoded.points.digest, item->encoded.points.bytes);
-    labels.append(sweep.begin, item->encoded.labels.digest, item->encoded.labels.bytes);
+    labels.append(item->true_begin, item->encoded.labels.digest, item->encoded.labels.bytes);
     totals.sweeps += 1;
     totals.rays += item->simulated.rays;
     totals.points += sweep.size();

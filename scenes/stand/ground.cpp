@@ -64,10 +64,10 @@ GroundBounds StandGround::bounds() const {
 }
 
 SlabGrid::SlabGrid(const StandOptions& options)
-    : origin_m(layout::apron_west_m, layout::apron_south_m),
+    : origin_m(layout::apron_west_m, options.apron_south_m),
       size_m(options.slab_size_m),
       nx(static_cast<int>(std::ceil((layout::apron_east_m - layout::apron_west_m) / size_m - 1e-9))),
-      ny(static_cast<int>(std::ceil((layout::apron_north_m - layout::apron_south_m) / size_m - 1e-9))) {}
+      ny(static_cast<int>(std::ceil((layout::apron_north_m - options.apron_south_m) / size_m - 1e-9))) {}
 
 SlabSurface::SlabSurface(const StandOptions& options, std::uint64_t seed, const Ground& ground)
     : ground_(&ground), grid_(options) {

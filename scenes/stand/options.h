@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/options.h"
+#include "scenes/stand/layout.h"
 
 namespace tarmac::scenes {
 
@@ -12,6 +13,8 @@ struct StandOptions {
   double slab_tilt_mm = 2;
   double relief_rms_mm = 2;
   double joint_depth_mm = 3;
+  double apron_south_m = layout::apron_south_m;
+  bool with_surroundings = true;
   bool with_aircraft = true;
   bool with_equipment = true;
   int cones = 12;
@@ -30,6 +33,9 @@ struct StandOptions {
       {.at_least = 0, .at_most = 10});
     v("relief_rms_mm", relief_rms_mm, "texture of the pavement, root mean square", {.at_least = 0, .at_most = 10});
     v("joint_depth_mm", joint_depth_mm, "mean depth of the joint grooves", {.at_least = 0, .at_most = 20});
+    v("apron_south_m", apron_south_m, "where the pavement ends in the south: farther away, an open apron to come from",
+      {.at_least = -600, .at_most = layout::apron_south_m});
+    v("with_surroundings", with_surroundings, "hangar, cargo shed, blast fence and the masts along the southern edge");
     v("with_aircraft", with_aircraft, "the A320 on the stand");
     v("with_equipment", with_equipment, "loaders, carts, cones and parked vehicles");
     v("cones", cones, "cones around the aircraft", {.at_least = 0, .at_most = 12});

@@ -57,15 +57,18 @@ class Assembly {
   const Ground* ground_;
 };
 
-void add_buildings(Assembly& a, const Ground& ground) {
+void add_buildings(Assembly& a, const Ground& ground, bool with_surroundings) {
   Terminal terminal = make_terminal(ground.height_m(0, l::facade_y_m));
   a.put(a.mesh(std::move(terminal.building)), Label::building);
   a.put(a.mesh(std::move(terminal.glass)), Label::glass);
-  a.put(a.mesh(make_hangar(ground.height_m(118, -47))), Label::building);
-  a.put(a.mesh(make_cargo_shed(ground.height_m(-124, -65))), Label::building);
-  a.put(a.mesh(make_blast_fence(ground)), Label::other);
+  if (with_surroundings) {
+    a.put(a.mesh(make_hangar(ground.height_m(118, -47))), Label::building);
+    a.put(a.mesh(make_cargo_shed(ground.height_m(-124, -65))), Label::building);
+    a.put(a.mesh(make_blast_fence(ground)), Label::other);
+  }
   const std::uint32_t mast = a.mesh("lighting_mast", [](MeshBuilder& b) { add_lighting_mast(b, 25); });
   for (const double x : {-100.0, -36.5, 34.5, 98.0}) a.found(mast, Label::mast, x, 33, 0);
+  if (!with_surroundings) return;
   for (const double x : {-95.0, 25.0, 85.0}) a.found(mast, Label::mast, x, -97, pi);
 }
 
@@ -186,7 +189,7 @@ Scene make_stand(const StandOptions& options, std::uint64_t seed) {
   a.put(a.mesh(make_pavement(slabs)), Label::pavement);
   a.put(a.mesh(make_markings(slabs)), Label::marking);
   a.put(a.mesh(make_grass(*ground, slabs.grid())), Label::vegetation);
-  add_buildings(a, *ground);
+  add_buildings(a, *ground, options.with_surroundings);
 
   const AircraftType& type = airbus_a320();
   const core::SE3 T_world_aircraft = park(type, *ground, 0, l::nose_y_m);

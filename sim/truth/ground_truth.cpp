@@ -45,7 +45,8 @@ std::vector<Fault> faults_from_json(const std::string& text, const std::string& 
     const nlohmann::json json = nlohmann::json::parse(text);
     for (const auto& entry : json.at("faults")) {
       faults.push_back({entry.at("kind").get<std::string>(), entry.at("sensor").get<std::string>(),
-                        entry.at("detail").get<std::string>()});
+                        entry.at("detail").get<std::string>(),
+                        entry.value("parameters", std::map<std::string, double>())});
     }
     return faults;
   } catch (const nlohmann::json::exception& error) {

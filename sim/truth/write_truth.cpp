@@ -21,7 +21,10 @@ constexpr Duration tum_period{1'000'000};
 std::string faults_as_json(const std::vector<Fault>& faults) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Fault& fault : faults) {
-    list.push_back({{"kind", fault.kind}, {"sensor", fault.sensor}, {"detail", fault.detail}});
+    list.push_back({{"kind", fault.kind},
+                    {"sensor", fault.sensor},
+                    {"detail", fault.detail},
+                    {"parameters", nlohmann::ordered_json(fault.parameters)}});
   }
   return nlohmann::ordered_json{{"faults", list}}.dump(2) + "\n";
 }

@@ -4,9 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 
+#include "reports/page_series.h"
 #include "reports/web_bundle.h"
 #include "tests/reports/example.h"
 
@@ -38,6 +41,11 @@ const json& run_of(const json& data, const std::string& estimator, std::uint64_t
   throw std::runtime_error("no run of " + estimator);
 }
 
+/// The x of a series: the page writes every distinct one once.
+const json& x_of(const json& data, const json& series) {
+  return data["grids"][series["x"].get<std::size_t>()];
+}
+
 TEST(PageData, HoldsTheSeriesOfEveryFigureForEveryEstimatorAndSeed) {
   const json data = data_of(assemble_page(example::input(), {}));
   EXPECT_EQ(data["seeds"], json({1, 2}));
@@ -49,7 +57,7 @@ TEST(PageData, HoldsTheSeriesOfEveryFigureForEveryEstimatorAndSeed) {
           "deskew_error_by_phase", "deskew_error_vs_time", "sweep_time_vs_time", "iterations_vs_time"}) {
       const json& series = run_of(data, "steady", seed)["series"];
       ASSERT_TRUE(series.contains(name)) << name;
-      EXPECT_EQ(series[name]["x"].size(), series[name]["y"].size()) << name;
+      EXPECT_EQ(x_of(data, series[name]).size(), series[name]["y"].size()) << name;
     }
   }
 }
@@ -71,7 +79,7 @@ TEST(PageData, KeepsValuesBandsAndGaps) {
   const metrics::Series& phase = *source.find("reference_error_by_phase");
   EXPECT_DOUBLE_EQ(run["series"]["reference_error_by_phase"]["y"][3], phase.y[3]);
   EXPECT_DOUBLE_EQ(run["series"]["reference_error_by_phase"]["high"][3], phase.high[3]);
-  EXPECT_TRUE(run["series"]["path_estimate"]["x"][0].is_null()) << "NaN is a gap, not a number";
+  EXPECT_TRUE(x_of(data, run["series"]["path_estimate"])[0].is_null()) << "NaN is a gap, not a number";
   EXPECT_DOUBLE_EQ(run["rows"][0]["value"], *source.rows[0].value);
 }
 
@@ -133,6 +141,83 @@ TEST(PageData, ThinsLongSeriesSoThatAPageStaysSmall) {
   const std::size_t step = series["step"];
   EXPECT_GT(step, 1u);
   EXPECT_DOUBLE_EQ(series["y"][5], -5.0 * static_cast<double>(step)) << "every step-th sample, from the first on";
+}
+
+TEST(PageData, WritesAnAxisThatSeriesShareOnce) {
+  const json data = data_of(assemble_page(example::input(), {}));
+  const json& steady = run_of(data, "steady", 1)["series"];
+  EXPECT_EQ(steady["deskew_error_vs_time"]["x"], steady["sweep_time_vs_time"]["x"]);
+  EXPECT_EQ(steady["deskew_error_vs_time"]["x"], run_of(data, "shaky", 1)["series"]["deskew_error_vs_time"]["x"]);
+  EXPECT_NE(steady["deskew_error_vs_time"]["x"], steady["path_estimate"]["x"]);
+  std::set<std::string> texts;
+  for (const json& grid : data["grids"]) texts.insert(grid.dump());
+  EXPECT_EQ(texts.size(), data["grids"].size());
+}
+
+ReportInput three_seeds() {
+  ReportInput input;
+  const double better[] = {0.20, 0.31, 0.39}, worse[] = {0.40, 0.60, 0.80};
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    input.runs.emplace_back();
+    input.runs.back().evaluations = {example::evaluation("worse", seed, worse[seed - 1]),
+                                     example::evaluation("better", seed, better[seed - 1])};
+  }
+  return input;
+}
+
+TEST(PageData, ComparesEstimatorsSeedBySeedInBothDirections) {
+  const json list = data_of(assemble_page(three_seeds(), {}))["comparisons"];
+  const auto find = [&](const char* a, const char* b, const char* metric) {
+    for (const json& c : list) {
+      if (c["a"] == a && c["b"] == b && c["metric"] == metric) return c;
+    }
+    throw std::runtime_error("no such comparison");
+  };
+  const json one = find("better", "worse", "end_error_percent"), other = find("worse", "better", "end_error_percent");
+  const double ratio = std::cbrt(0.20 * 0.31 * 0.39 / (0.40 * 0.60 * 0.80));  // geometric mean
+  EXPECT_NEAR(one["ratio"], ratio, 1e-5);
+  EXPECT_NEAR(other["ratio"], 1 / ratio, 1e-5);
+  EXPECT_EQ(one["difference"], "lower");
+  EXPECT_EQ(other["difference"], "higher");
+  EXPECT_EQ(one["a_lower"], 3);
+  EXPECT_EQ(other["a_lower"], 0);
+  EXPECT_LT(one["high"], 1);
+  EXPECT_NEAR(one["low"].get<double>() * other["high"].get<double>(), 1, 1e-5);
+  EXPECT_EQ(find("better", "worse", "deskew_error_rms_m")["difference"], "not_significant") << "equal on every seed";
+}
+
+TEST(PageData, GivesNoIntervalWhereSeedsAreTooFew) {
+  const json list = data_of(assemble_page(example::input(), {}))["comparisons"];  // one of two seeds crashed
+  ASSERT_FALSE(list.empty());
+  for (const json& c : list) {
+    EXPECT_EQ(c["difference"], "too_few");
+    EXPECT_EQ(c["pairs"], 1);
+    EXPECT_TRUE(c["low"].is_null() && c["high"].is_null());
+  }
+  ReportInput one_seed = example::input();
+  one_seed.runs.resize(1);
+  EXPECT_TRUE(data_of(assemble_page(one_seed, {}))["comparisons"].empty());
+}
+
+TEST(PageSeries, ShortOnesLeaveTheirShareToTheLong) {
+  std::vector<ReportRun> runs(1);
+  metrics::Evaluation evaluation;
+  const auto add = [&](std::size_t samples, bool band) {
+    metrics::Series series;
+    series.x.assign(samples, 0);
+    series.y.assign(samples, 0);
+    if (band) series.low = series.high = series.y;
+    evaluation.series.push_back(series);
+  };
+  add(100, true);    // 4 columns
+  add(5000, false);  // 2
+  add(3000, false);  // 2
+  runs[0].evaluations = {evaluation};
+  EXPECT_EQ(longest_series(runs, 16400), 5000u) << "all fits: 400 + 10000 + 6000";
+  EXPECT_EQ(longest_series(runs, 12400), 3000u) << "the longest alone gives way: 400 + 2*3000 + 2*3000";
+  EXPECT_EQ(longest_series(runs, 8400), 2000u) << "both long ones: 400 + 2*2000 + 2*2000";
+  EXPECT_EQ(longest_series(runs, 10), kMinSamplesEach) << "a curve must stay one";
+  EXPECT_EQ(longest_series({}, 10), kMinSamplesEach);
 }
 
 TEST(Page, RefersToNothingOutsideOfItself) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "metrics/degeneracy/oracle.h"
 #include "metrics/evaluate.h"
 #include "sim/truth/ground_truth.h"
 #include "tools/tarmac/outcome.h"
@@ -21,7 +22,7 @@ fs::path resolve(const RunFolder& run, const std::string& path) {
 }
 
 metrics::Evaluation evaluate_one(const fs::path& folder, const Outcome& outcome, const core::Recording& recording,
-                                 const sim::truth::GroundTruth* truth, int threads) {
+                                 const sim::truth::GroundTruth* truth, const metrics::Oracle* oracle, int threads) {
   if (outcome.status != "ok") {
     metrics::Evaluation evaluation;
     if (truth) evaluation.scenario = truth->scenario;
@@ -39,7 +40,8 @@ metrics::Evaluation evaluate_one(const fs::path& folder, const Outcome& outcome,
     reader.emplace(folder / "diagnostics.bin");
     diagnostics = metrics::diagnostics_of(*reader);
   }
-  return metrics::evaluate(estimate, recording, truth, &timing, {.threads = threads}, reader ? &diagnostics : nullptr);
+  return metrics::evaluate(estimate, recording, truth, &timing, {.threads = threads}, reader ? &diagnostics : nullptr,
+                           oracle);
 }
 
 }  // namespace
@@ -51,6 +53,11 @@ std::vector<metrics::Evaluation> evaluate_run(const RunFolder& run, int threads,
   if (!provenance.truth.empty()) truth = sim::truth::load_ground_truth(resolve(run, provenance.truth));
   const std::vector<fs::path> folders = estimator_folders(run);
   const core::Progress progress = console.progress("evaluate");
+  std::optional<metrics::Oracle> oracle;  // the recording's, for all its estimates
+  if (truth && !folders.empty()) {
+    progress(0, "oracle");
+    oracle = metrics::make_oracle(recording, *truth, {.threads = threads});
+  }
   std::vector<metrics::Evaluation> evaluations;
   for (std::size_t i = 0; i < folders.size(); ++i) {
     const Outcome outcome = load_outcome(folders[i]);
@@ -60,7 +67,8 @@ std::vector<metrics::Evaluation> evaluate_run(const RunFolder& run, int threads,
                       folders[i].string(), outcome.recording_hash, recording.hash()));
     }
     progress(static_cast<double>(i) / static_cast<double>(folders.size()), outcome.estimator);
-    evaluations.push_back(evaluate_one(folders[i], outcome, recording, truth ? &*truth : nullptr, threads));
+    evaluations.push_back(
+        evaluate_one(folders[i], outcome, recording, truth ? &*truth : nullptr, oracle ? &*oracle : nullptr, threads));
     metrics::save_evaluation(folders[i], evaluations.back());
   }
   progress(1.0, "");

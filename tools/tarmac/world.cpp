@@ -25,6 +25,7 @@ void check_world(const scenarios::Scenario& scenario) {
   scenes::scene_of(scenario.scene).resolve(scenario.scene);
   sim::truth::resolve_motion(scenario.motion);
   sim::resolve_rig(scenario.rig);
+  sim::resolve_faults(scenario.faults, scenario.rig);
 }
 
 std::string resolve_scenario(const scenarios::Scenario& scenario, std::uint64_t seed,
@@ -35,6 +36,8 @@ std::string resolve_scenario(const scenarios::Scenario& scenario, std::uint64_t 
   text += "scene:\n" + scenes::scene_of(scenario.scene).resolve(scenario.scene);
   text += "motion:\n" + sim::truth::resolve_motion(scenario.motion);
   text += "rig:\n" + sim::resolve_rig(scenario.rig);
+  if (const std::string faults = sim::resolve_faults(scenario.faults, scenario.rig); !faults.empty())
+    text += "faults:\n" + faults;
   if (!estimators.empty()) text += "estimators:\n";
   for (const EstimatorRequest& request : estimators) {
     const std::string options = resolved_options(request);
@@ -51,6 +54,7 @@ sim::SimulationInput build_world(const scenarios::Scenario& scenario, std::uint6
   input.scene = std::make_shared<const scenes::Scene>(scenes::make_scene(scenario.scene, seed));
   input.motion = sim::truth::make_motion(scenario.motion, scenario.duration(), input.scene->ground, seed);
   input.rig = scenario.rig;
+  input.faults = scenario.faults;
   input.resolved_scenario = resolved;
   input.resolved_motion = sim::truth::resolve_motion(scenario.motion);
   return input;

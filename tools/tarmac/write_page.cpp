@@ -20,10 +20,12 @@ void write_page(const std::vector<RunFolder>& runs, const std::filesystem::path&
   bool first = true;
   for (const RunFolder& run : runs) {
     const Provenance provenance = load_provenance(run.provenance());
-    const std::string shown = provenance.truth.empty() ? "recording " + provenance.recording_hash : provenance.scenario;
+    const std::string shown = provenance.truth.empty() ? "Recording " + provenance.recording_hash : provenance.scenario;
     if (first && provenance.truth.empty()) {
       input.title = shown;
-      input.why = "A recording from outside: nobody knows its true motion, so what needs the truth is n/a.";
+      input.why =
+          "A recording from outside. What needs the true motion is left out or n/a; what the methods say of "
+          "themselves is here.";
     } else if (first) {
       const scenarios::Scenario scenario = scenarios::load_scenario(run.scenario(), {});
       input.title = scenario.name;

@@ -76,7 +76,7 @@ export function provenance(state) {
   const blocks = state.data.provenance.map(({ folder, text }, i) => {
     const content = parsed(text);
     if (content === null) return el("pre", {}, text);
-    const rows = flatten(content, "", []).filter(([key]) => key !== "command");
+    const rows = flatten(content, "", []).filter(([key, value]) => key !== "command" && value !== "");
     const table = el("table", { class: "facts" }, el("tbody", {}, ...rows.map(([key, value]) =>
       el("tr", {}, el("th", { scope: "row" }, key.replaceAll("_", " ")), el("td", {}, value)))));
     if (i === 0) return table;

@@ -5,6 +5,7 @@ export function createState(data) {
   const hidden = new Set();
   const state = {
     data,
+    hasTruth: Object.values(data.truth).some((series) => series.path_true),
     seed: data.seeds.length > 1 ? "all" : data.seeds[0],
     isVisible: (estimator) => !hidden.has(estimator),
     toggle(estimator) {

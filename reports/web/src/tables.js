@@ -3,6 +3,7 @@ import { el } from "./dom.js";
 import { formatNumber, formatRange } from "./format.js";
 import { isNumber, median, range, sortRows } from "./stats.js";
 
+/** Columns of the summary, as far as any run has a value: without truth the errors make room for what is left. */
 const kSummary = [
   ["end_error_percent", "End error"],
   ["ate_se3_rmse_m", "Path error"],
@@ -10,6 +11,7 @@ const kSummary = [
   ["point_error_rms_m", "Point error"],
   ["deskew_error_rms_m", "Deskew error"],
   ["sweep_time_p50_ms", "Time a sweep"],
+  ["iterations_mean", "Iterations"],
   ["coverage_percent", "Coverage"],
 ];
 
@@ -25,7 +27,7 @@ export function gather(runs, metric, estimate) {
   return { rows, values, median: median(values), range: range(values), reason: reason ?? "" };
 }
 
-function metricTip(metric) {
+export function metricTip(metric) {
   if (!metric) return "";
   const better = metric.lower_is_better ? "Lower is better." : "";
   const alignment = metric.alignment && metric.alignment !== "none needed" ? ` Alignment: ${metric.alignment}.` : "";
@@ -57,20 +59,51 @@ function statusCell(runs) {
     el("span", { class: `chip ${failed.length === 0 ? "good" : failed.length === runs.length ? "bad" : "mixed"}`, tabindex: why ? "0" : null, "data-tip": why || null }, text));
 }
 
-function sortButton(label, unit, tip, current, onclick) {
+export function sortButton(label, unit, tip, current, onclick) {
   const arrow = current === null ? "" : current ? " ▲" : " ▼";
   return el("th", { scope: "col", "aria-sort": current === null ? "none" : current ? "ascending" : "descending" },
     el("button", { type: "button", class: "sort", "data-tip": tip || null, onclick }, el("span", {}, label, el("span", { class: "arrow" }, arrow)),
       unit === undefined ? null : el("span", { class: "unit" }, unit || "\u00a0")));
 }
 
+/** Columns of `wanted` in which some run has a value, and the others with the reason why none has. */
+export function filledColumns(runs, wanted) {
+  const shown = [];
+  const missing = [];
+  for (const [metric, label] of wanted) {
+    const rows = runs.flatMap((run) => run.rows.filter((row) => row.metric === metric));
+    if (rows.some((row) => isNumber(row.value))) shown.push([metric, label]);
+    else if (rows.length) missing.push({ metric, label, reason: rows[0].status });
+  }
+  return { shown, missing };
+}
+
+/** "Path error" -> "path error", but "KITTI rotation" stays. */
+const lowered = (label) => (/^.[A-Z]/.test(label) ? label : label[0].toLowerCase() + label.slice(1));
+
+/** "No path error or step error: the recording has no truth." One sentence a reason. */
+export function whyMissing(missing) {
+  const reasons = new Map();
+  for (const { label, reason } of missing) {
+    const why = reason.replace(/^(n\/a|failed): /, "");
+    reasons.set(why, [...(reasons.get(why) ?? []), lowered(label)]);
+  }
+  return [...reasons].map(([why, labels]) => `No ${labels.length > 1 ? `${labels.slice(0, -1).join(", ")} or ${labels.at(-1)}` : labels[0]}: ${why}.`).join(" ");
+}
+
 export class SummaryTable {
-  constructor(state) {
+  /** `wanted`: columns as [metric, label]; the summary's, with how the runs ended, when nothing else is said. */
+  constructor(state, wanted) {
     this.state = state;
-    this.sort = { column: "end_error_percent", ascending: true };
+    this.withStatus = !wanted;
     this.open = new Set();
     this.element = el("div", { class: "table-wrap", tabindex: "0", role: "region", "aria-label": "Summary" });
-    this.columns = kSummary.filter(([metric]) => state.data.runs.some((run) => run.rows.some((row) => row.metric === metric)));
+    const { shown, missing } = filledColumns(state.data.runs, wanted ?? kSummary);
+    const iterations = wanted ? -1 : shown.findIndex(([metric]) => metric === "iterations_mean");
+    if (state.hasTruth && iterations >= 0) shown.splice(iterations, 1);  // there is no room for it, and it is in the table below
+    this.columns = shown;
+    this.missing = whyMissing(missing);
+    this.sort = { column: shown[0]?.[0] ?? "name", ascending: true };
     state.listen((what) => { if (what !== "theme") this.draw(); });
     this.draw();
   }
@@ -80,7 +113,8 @@ export class SummaryTable {
     const rows = this.state.data.estimators.map((name) => {
       const runs = this.state.runs(name);
       return { name, runs, cells: Object.fromEntries(this.columns.map(([metric]) => [metric, gather(runs, metric)])) };
-    }).filter((row) => row.runs.length > 0);
+    }).filter((row) => row.runs.length > 0
+      && (this.withStatus || this.columns.some(([metric]) => row.cells[metric].median !== null)));
     const { column, ascending } = this.sort;
     const key = (row) => (column === "name" ? row.name : column === "status" ? row.runs.filter((r) => r.status !== "ok").length : row.cells[column]?.median);
     const header = (id, label, unit, tip) => sortButton(label, unit, tip, column === id ? ascending : null, () => {
@@ -89,7 +123,7 @@ export class SummaryTable {
     });
     const head = el("tr", {}, header("name", "Estimator", "", "Sort by name"),
       ...this.columns.map(([metric, label]) => header(metric, label, metrics[metric]?.unit, metricTip(metrics[metric]) || metric)),
-      header("status", "Status", "", "Sort by failed runs"));
+      this.withStatus ? header("status", "Status", "", "Sort by failed runs") : null);
     const best = Object.fromEntries(this.columns.map(([metric]) => [metric, this.best(rows, metric)]));
     const body = sortRows(rows, key, ascending).flatMap((row) => this.rowsOf(row, best, rows.length));
     this.element.replaceChildren(el("table", { class: "summary" }, el("thead", {}, head), el("tbody", {}, ...body)));
@@ -114,10 +148,10 @@ export class SummaryTable {
         [...this.element.querySelectorAll(".expand")].find((b) => b.dataset.name === row.name)?.focus();
       }, "data-name": row.name }, open ? "hide runs" : `${row.runs.length} runs`) : null);
     const main = el("tr", { class: this.state.isVisible(row.name) ? "" : "off" }, name,
-      ...this.columns.map(([metric]) => cell(row.cells[metric], best[metric] === row.name, count)), statusCell(row.runs));
+      ...this.columns.map(([metric]) => cell(row.cells[metric], best[metric] === row.name, count)), this.withStatus ? statusCell(row.runs) : null);
     if (!several || !open) return [main];
     const seeds = row.runs.map((run) => el("tr", { class: "seed" }, el("th", { scope: "row" }, `seed ${run.seed}`),
-      ...this.columns.map(([metric]) => cell(gather([run], metric), false, 0)), statusCell([run])));
+      ...this.columns.map(([metric]) => cell(gather([run], metric), false, 0)), this.withStatus ? statusCell([run]) : null));
     return [main, ...seeds];
   }
 }
@@ -128,11 +162,14 @@ export class FullTable {
     this.state = state;
     this.sort = { column: null, ascending: true };
     this.filter = "";
+    this.all = false;  // rows without any value too
     this.body = el("div", { class: "table-wrap", tabindex: "0", role: "region", "aria-label": "All metrics" });
     this.count = el("span", { class: "muted" });
     this.element = el("details", { class: "all" }, el("summary", {}, "All metrics"),
       el("div", { class: "filter" }, el("label", {}, "Filter ", el("input", { type: "search", placeholder: "rpe, deskew, …",
-        oninput: (event) => { this.filter = event.target.value.toLowerCase(); this.draw(); } })), this.count), this.body);
+        oninput: (event) => { this.filter = event.target.value.toLowerCase(); this.draw(); } })),
+        el("label", {}, el("input", { type: "checkbox", onchange: (event) => { this.all = event.target.checked; this.draw(); } }), "also those without a value"),
+        this.count), this.body);
     state.listen((what) => { if (what !== "theme") this.draw(); });
     this.draw();
   }
@@ -162,14 +199,16 @@ export class FullTable {
     const all = this.rows();
     const words = this.filter.split(/\s+/).filter(Boolean);
     const meaning = (row) => `${row.label} ${this.state.data.metrics[row.metric]?.meaning ?? ""}`.toLowerCase();
-    const shown = all.filter((row) => words.every((word) => meaning(row).includes(word)));
+    const found = all.filter((row) => words.every((word) => meaning(row).includes(word)));
+    const filled = found.filter((row) => estimators.some((name) => isNumber(row.cells[name].median)));
+    const shown = this.all ? found : filled;
     const key = (row) => (column === null ? row.order : column === "metric" ? row.label : column === "unit" ? row.unit : row.cells[column]?.median);
     const best = (row) => {
       const finite = estimators.filter((name) => isNumber(row.cells[name].median));
       if (!this.state.data.metrics[row.metric]?.lower_is_better || finite.length < 2) return null;
       return finite.reduce((a, b) => (row.cells[b].median < row.cells[a].median ? b : a));
     };
-    this.count.textContent = `${shown.length} of ${all.length}`;
+    this.count.textContent = `${shown.length} of ${all.length}${found.length > shown.length ? `; ${found.length - shown.length} have no value` : ""}`;
     const body = sortRows(shown, key, ascending).map((row) => {
       const winner = best(row);
       return el("tr", {}, el("th", { scope: "row" }, el("code", { tabindex: "0", "data-tip": metricTip(this.state.data.metrics[row.metric]) || null }, row.label)),

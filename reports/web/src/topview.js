@@ -10,12 +10,13 @@ export class TopView {
     this.state = state;
     this.magnify = 1;
     this.canvas = el("canvas", { class: "topview", tabindex: "0", role: "application",
-      "aria-label": "True and estimated paths from above. Plus and minus zoom, arrow keys move, zero shows all." });
+      "aria-label": "Paths from above. Plus and minus zoom, arrow keys move, zero shows all." });
     this.tip = el("div", { class: "hover-card", hidden: true });
     this.wrap = el("div", { class: "topview-wrap" }, this.canvas, this.tip, this.tools());
     this.element = el("div", {}, this.magnifier(), this.wrap);
     this.image = null;
     const top = state.data.pictures.top;
+    if (!state.hasTruth) this.element.firstChild.remove();
     if (top) {
       this.image = new Image();
       this.image.onload = () => this.draw();
@@ -61,6 +62,12 @@ export class TopView {
     return { truths, estimates };
   }
 
+  /** Where the geometry leaves a direction free, on the true paths of the chosen seeds. */
+  degenerate() {
+    const seeds = this.state.seed === "all" ? this.state.data.seeds : [this.state.seed];
+    return seeds.map((seed) => this.state.data.truth[String(seed)]?.path_degenerate).filter(Boolean);
+  }
+
   /** Where a sample is drawn: the true place plus the error times the magnification. */
   place(path, i) {
     const [x, y] = [path.x[i], path.y[i]];
@@ -78,7 +85,7 @@ export class TopView {
     const drawn = truths.length ? truths : estimates;
     const [x0, x1] = range(drawn.flatMap((path) => path.x)) ?? [-10, 10];
     const [y0, y1] = range(drawn.flatMap((path) => path.y)) ?? [-10, 10];
-    const margin = 0.1 * Math.max(x1 - x0, y1 - y0, 10);
+    const margin = 0.1 * Math.max(x1 - x0, y1 - y0, truths.length ? 10 : 0.1);
     return [x0 - margin, y0 - margin, x1 + margin, y1 + margin];
   }
 
@@ -137,6 +144,9 @@ export class TopView {
     this.drawPicture(g);
     const { truths, estimates } = this.paths();
     const onPicture = Boolean(this.image);
+    for (const path of this.degenerate()) {
+      this.stroke(g, path.x.map((x, i) => [x, path.y[i]]), onPicture ? "rgba(240,70,40,0.62)" : "rgba(200,60,30,0.4)", 17);
+    }
     for (const path of truths) {
       const points = path.x.map((x, i) => [x, path.y[i]]);
       this.stroke(g, points, onPicture ? "rgba(20,24,28,0.55)" : "transparent", 6.5);
@@ -148,7 +158,7 @@ export class TopView {
       if (onPicture) this.stroke(g, points, "rgba(255,255,255,0.35)", many ? 2.2 : 3.4);
       this.stroke(g, points, onPicture ? cssColor(path.color.replace("--c", "--map-c")) : cssColor(path.color), many ? 1.1 : 1.9);
     }
-    for (const path of truths.slice(0, 1)) this.drawEnds(g, path);
+    for (const path of (truths.length ? truths : estimates).slice(0, 1)) this.drawEnds(g, path);
     this.drawScaleBar(g);
   }
 
@@ -195,11 +205,7 @@ export class TopView {
       g.lineWidth = 2;
       g.strokeStyle = label === "start" ? "#14181c" : "#ffffff";
       g.stroke();
-      g.lineWidth = 3;
-      g.strokeStyle = "rgba(20,24,28,0.75)";
-      g.fillStyle = "#ffffff";
-      g.strokeText(label, x + 8, y + dy + 4);
-      g.fillText(label, x + 8, y + dy + 4);
+      this.label(g, label, x + 8, y + dy + 4);
     }
   }
 
@@ -210,7 +216,7 @@ export class TopView {
     const [x, y, width] = [16, this.height - 18, length * this.scale];
     g.font = '600 11.5px "Inter", ui-sans-serif, system-ui, sans-serif';
     const text = length >= 1 ? `${length} m` : formatLength(length);
-    for (const [color, line] of [["rgba(20,24,28,0.7)", 5], ["#ffffff", 2]]) {
+    for (const [color, line] of this.image ? [["rgba(20,24,28,0.7)", 5], ["#ffffff", 2]] : [[cssColor("--ink"), 1.5]]) {
       g.beginPath();
       g.moveTo(x, y - 5);
       g.lineTo(x, y);
@@ -221,11 +227,16 @@ export class TopView {
       g.lineJoin = "miter";
       g.stroke();
     }
-    g.strokeStyle = "rgba(20,24,28,0.75)";
+    this.label(g, text, x + 6, y - 8);
+  }
+
+  /** White on the picture, ink on plain ground. */
+  label(g, text, x, y) {
     g.lineWidth = 3;
-    g.strokeText(text, x + 6, y - 8);
-    g.fillStyle = "#ffffff";
-    g.fillText(text, x + 6, y - 8);
+    g.strokeStyle = this.image ? "rgba(20,24,28,0.75)" : cssColor("--map-ground");
+    g.fillStyle = this.image ? "#ffffff" : cssColor("--ink");
+    g.strokeText(text, x, y);
+    g.fillText(text, x, y);
   }
 
   /** The nearest drawn sample within reach of the pointer. */
@@ -250,11 +261,12 @@ export class TopView {
     if (!hit) return;
     const { path, i } = hit;
     const g = this.canvas.getContext("2d");
+    const color = this.image ? path.color.replace("--c", "--map-c") : path.color;
     const truth = path.truth && path.truth.x.length === path.x.length ? [path.truth.x[i], path.truth.y[i]] : null;
     if (truth) this.stroke(g, [truth, this.place(path, i)], "#ffffff", 1.5);
     g.beginPath();
     g.arc(hit.x, hit.y, 5, 0, 2 * Math.PI);
-    g.fillStyle = cssColor(path.color.replace("--c", "--map-c"));
+    g.fillStyle = cssColor(color);
     g.fill();
     g.strokeStyle = "#ffffff";
     g.lineWidth = 1.5;
@@ -263,7 +275,7 @@ export class TopView {
     const seeds = this.state.data.seeds.length > 1 ? ` · seed ${path.seed}` : "";
     this.tip.replaceChildren(el("strong", {}, `${path.name}${seeds}`), el("br"),
       `sweep ${path.first + i * path.step}`, el("br"),
-      error === null ? "" : `${formatLength(error)} from the truth, seen from above`, el("br"),
+      ...(error === null ? [] : [`${formatLength(error)} from the truth, seen from above`, el("br")]),
       el("span", { class: "muted" }, `x ${formatNumber(path.x[i])} m, y ${formatNumber(path.y[i])} m`));
     const left = hit.x + 14 + this.tip.offsetWidth > this.width ? hit.x - 14 - this.tip.offsetWidth : hit.x + 14;
     this.tip.style.left = `${Math.max(4, left)}px`;

@@ -1,0 +1,77 @@
+#include "reports/page_comparisons.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "reports/page_series.h"
+
+namespace tarmac::reports {
+
+namespace {
+
+using metrics::PairedComparison;
+using nlohmann::json;
+
+/// Errors only: times of one machine are no sample over seeds.
+constexpr const char* kCompared[] = {"end_error_percent",          "ate_se3_rmse_m",       "kitti_trans_percent",
+                                     "rpe_1sweep_trans_rmse_m",    "point_error_rms_m",    "deskew_error_rms_m",
+                                     "deskew_error_braking_rms_m", "drift_50m_yaw_rms_deg"};
+
+std::vector<const metrics::Evaluation*> all_of(const std::vector<ReportRun>& runs) {
+  std::vector<const metrics::Evaluation*> all;
+  for (const auto& run : runs) {
+    for (const auto& evaluation : run.evaluations) all.push_back(&evaluation);
+  }
+  return all;
+}
+
+/// Every pair in both orders, each with its own count of seeds: compare_all goes by the order of first appearance.
+std::vector<PairedComparison> both_ways(std::vector<const metrics::Evaluation*> all, const std::string& metric) {
+  std::vector<PairedComparison> list = metrics::compare_all(all, metric);
+  std::vector<std::string> names;
+  for (const auto* evaluation : all) {
+    if (std::find(names.begin(), names.end(), evaluation->estimator) == names.end()) {
+      names.push_back(evaluation->estimator);
+    }
+  }
+  const auto place = [&](const metrics::Evaluation* e) { return std::find(names.begin(), names.end(), e->estimator); };
+  std::stable_sort(all.begin(), all.end(), [&](const auto* x, const auto* y) { return place(x) > place(y); });
+  const std::vector<PairedComparison> turned = metrics::compare_all(all, metric);
+  list.insert(list.end(), turned.begin(), turned.end());
+  return list;
+}
+
+}  // namespace
+
+json comparisons(const std::vector<ReportRun>& runs) {
+  json list = json::array();
+  if (runs.size() < 2) return list;
+  const auto all = all_of(runs);
+  for (const char* metric : kCompared) {
+    for (const PairedComparison& c : both_ways(all, metric)) {
+      if (c.pairs == 0) continue;
+      const bool few = c.difference == metrics::Difference::too_few;
+      list.push_back({{"metric", c.metric},
+                      {"a", c.a},
+                      {"b", c.b},
+                      {"pairs", c.pairs},
+                      {"a_lower", c.a_lower},
+                      {"ratio", number(c.ratio)},
+                      {"low", few ? json() : number(c.low)},
+                      {"high", few ? json() : number(c.high)},
+                      {"p", number(c.p)},
+                      {"difference", metrics::name_of(c.difference)}});
+    }
+  }
+  return list;
+}
+
+PairedComparison comparison_of(const std::vector<ReportRun>& runs, const std::string& a, const std::string& b,
+                               const std::string& metric) {
+  for (const PairedComparison& c : both_ways(all_of(runs), metric)) {
+    if (c.a == a && c.b == b) return c;
+  }
+  return {};
+}
+
+}  // namespace tarmac::reports
