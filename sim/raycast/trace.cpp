@@ -204,7 +204,8 @@ void SweepTracer::State::load(const Rays& rays, std::span<const std::uint32_t> l
     const bool used = lanes[lane] != no_ray;
     valid[lane] = used ? -1 : 0;
     ray[lane] = used ? lanes[lane] : lanes[0];  // a real ray in idle lanes: no stray numbers
-    packet.ray.time[lane] = static_cast<float>(rays.t_ns[ray[lane]]) * per_ns;
+    // The last ray of a sweep fires at its end: rounding must not put it beyond.
+    packet.ray.time[lane] = std::min(1.0f, static_cast<float>(rays.t_ns[ray[lane]]) * per_ns);
   }
   load_rays(ray, arrays_of(rays), packet.ray);
   std::fill_n(packet.ray.tfar, tile, reach_m);

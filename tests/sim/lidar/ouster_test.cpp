@@ -1,6 +1,7 @@
 // Sensors built from the metadata that Ouster sensors tell of themselves, and recorded column times fired at again.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <iostream>
 #include <set>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -353,11 +355,11 @@ TEST_F(OusterMetadata, BeamsThatASensorLacksAreLeftOut) {
 }
 
 TEST_F(OusterMetadata, SensorOfUnknownOpticsNeedsAProfileThatSaysThem) {
-  const std::string domes = with(flat, "OS-1-4", "OS-2-4");
-  expect_refused(domes, {"sensor.json", "OS-2-4", "channels: sensor.json"});
+  const std::string domes = with(flat, "OS-1-4", "OS-DOME-4");
+  expect_refused(domes, {"sensor.json", "OS-DOME-4", "channels: sensor.json"});
   write("sensor.json", domes);
   const lidar::Profile p = lidar::load_profile(
-      write("os2.yaml",
+      write("dome.yaml",
             "channels: sensor.json\nmax_range_m: 300\nrange_10_percent_m: 80\nrange_80_percent_m: 210\n"
             "threshold_snr: 5.5\nsigma_from_m: [0]\nsigma_m: [0.03]\ndefault_mode: 1024x10\n"));
   EXPECT_EQ(p.elevation_deg, (std::vector<double>{10.5, 3.25, -3, -11}));

@@ -136,7 +136,7 @@ TEST(SpinJitter, AnySweepIsTheSameWhoeverAsksFirst) {
   EXPECT_NE(firing("hdl-32e", jitter(0.003, 6)).sweep(40).first_cycle, one.sweep(40).first_cycle);
 }
 
-TEST(SpinJitter, EncoderErrorIsUniformOverItsStepAndParts_TrueFromReported) {
+TEST(SpinJitter, EncoderErrorIsUniformOverItsStepAndPartsTrueFromReported) {
   for (const char* name : {"ouster-os1-64-gen2", "vlp-16"}) {
     const FiringTable exact = firing(name, jitter(0, 2)), errs = firing(name, jitter(0, 2, 0.5, 0.01));
     double sum = 0, squares = 0, largest = 0;

@@ -133,7 +133,8 @@ TEST_F(UserSensor, ImpossibleFiringTablesAreRefusedWithLineAndField) {
   expect_in(complaint(start + "timing: encoder\nmodes: [fast]\n"), {"mine.yaml:11", "modes", "'fast' is no mode"});
   expect_in(complaint(start + "timing: encoder\nmodes: [1024x10, 512x10]\n"), {"default_mode"});
   expect_in(complaint(start + "timing: pulse\n"), {"mine.yaml:10", "timing", "encoder, clock"});
-  expect_in(complaint(clock + "elevation: [1]\n"), {"mine.yaml:12", "elevation", "did you mean 'elevation_deg'"});
+  expect_in(complaint(clock + "elevation_dog: [1]\n"),
+            {"mine.yaml:12", "elevation_dog", "did you mean 'elevation_deg'"});
   expect_in(complaint(std::string(optics) + clock_timing + "elevation_deg: [91]\nazimuth_offset_cw_deg: [0]\n"),
             {"mine.yaml:10", "elevation_deg", "91", "at most 90"});
 }
@@ -150,7 +151,8 @@ TEST_F(UserSensor, MalformedTablesAreRefusedWithFileLineAndColumn) {
   expect_in(about(header + "1,0,0\n2,zero,1\n"), {"table.csv:3", "azimuth_offset_cw_deg", "'zero'", "finite number"});
   expect_in(about(header + "1,0,nan\n"), {"table.csv:2", "firing_us", "finite"});
   expect_in(about(header + "100,0,0\n"), {"table.csv:2", "elevation_deg", "at most 90"});
-  expect_in(about("elev_deg,azimuth_offset_cw_deg\n"), {"table.csv:1", "elev_deg", "did you mean 'elevation_deg'"});
+  expect_in(about("elevation_dog,azimuth_offset_cw_deg\n"),
+            {"table.csv:1", "elevation_dog", "did you mean 'elevation_deg'"});
   expect_in(about("elevation_deg,firing_us\n1,0\n"), {"table.csv:1", "azimuth_offset_cw_deg", "missing"});
   expect_in(about("elevation_deg,elevation_deg\n"), {"table.csv:1", "stands twice"});
   expect_in(about(header), {"table.csv", "no channels"});
