@@ -19,13 +19,23 @@ using Vector18 = Eigen::Matrix<double, 18, 1>;
 
 constexpr int kSaw = 18;                 // the last column
 constexpr std::size_t kFewestRows = 60;  // three a parameter
-constexpr double kTukey = 4.685;         // 95 % efficient for Gaussian residuals
+constexpr double kHuber = 1.345, kTukey = 4.685;  // both 95 % efficient for Gaussian residuals
 constexpr double kPrior = 1;             // [1/m^2, 1/rad^2]: what the rows leave free stays at 0 +- 1 m, 1 rad
 
 /// A row as the fit wants it.
 struct Equation {
   Vector19 a;
-  double r = 0, weight = 1;
+  double r = 0;
+  bool level = false;  ///< the surface faces up or down
+  double robust = 1;   ///< weight by the loss alone
+  double weight = 1;   ///< and by the spread of its class
+};
+
+/// Spread of residuals, of level surfaces and of all others: pavement seen at a grazing angle hardly shows the noise of
+/// ranges and is most of what a sweep sees. With one spread for all, walls would be outliers wherever they say most.
+struct Spread {
+  double level_m = 1, other_m = 1;
+  double of(const Equation& e) const { return e.level ? level_m : other_m; }
 };
 
 /// J by the pose at mid-sweep: T(t) = T_mid C with C = Exp(tau twist), hence Exp(xi) at mid is Exp(Ad(C^-1) xi) at t;
@@ -46,6 +56,7 @@ Equation equation(const ResidualRow& row, double s, double span_s, const SweepRa
   Equation e;
   e.a << J, linear * J, square * J, -(place - 0.5) * J.dot(rates.twist);
   e.r = row.value;
+  e.level = std::abs(J_time[2]) > 0.8;
   return e;
 }
 
@@ -70,17 +81,34 @@ Vector18 solve_shape(const Normal& n) {
   return H.ldlt().solve(n.g.head<18>());
 }
 
-/// Robust standard deviation about the shape.
-double spread(const std::vector<Equation>& equations, const Vector18& x) {
-  std::vector<double> off;
-  for (const Equation& e : equations) off.push_back(std::abs(e.r - e.a.head<18>().dot(x)));
-  return std::max(1e-6, 1.4826 * quantile(std::move(off), 0.5));
+double residual(const Equation& e, const Vector18& x) {
+  return e.r - e.a.head<18>().dot(x);
 }
 
-void weigh(std::vector<Equation>& equations, const Vector18& x, double sigma_m) {
+/// Robust standard deviation about the shape, of those that `use` takes; 0 when there are none.
+template <class Use>
+double robust_sigma(const std::vector<Equation>& equations, const Vector18& x, const Use& use) {
+  std::vector<double> off;
+  for (const Equation& e : equations)
+    if (use(e)) off.push_back(std::abs(residual(e, x)));
+  return off.empty() ? 0 : std::max(1e-6, 1.4826 * quantile(std::move(off), 0.5));
+}
+
+Spread spread(const std::vector<Equation>& equations, const Vector18& x) {
+  return {robust_sigma(equations, x, [](const Equation& e) { return e.level; }),
+          robust_sigma(equations, x, [](const Equation& e) { return !e.level; })};
+}
+
+/// Huber's weight, which has one minimum, until the shape is about right; then Tukey's, which ignores outliers.
+void weigh(std::vector<Equation>& equations, const Vector18& x, bool tukey) {
+  const Spread sigma = spread(equations, x);
   for (Equation& e : equations) {
-    const double u = (e.r - e.a.head<18>().dot(x)) / (kTukey * sigma_m);
-    e.weight = std::abs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
+    const double s = sigma.of(e), u = std::abs(residual(e, x)) / s, v = u / kTukey;
+    if (tukey)
+      e.robust = v < 1 ? (1 - v * v) * (1 - v * v) : 0;
+    else
+      e.robust = u > kHuber ? kHuber / u : 1;
+    e.weight = e.robust / (s * s);
   }
 }
 
@@ -102,16 +130,12 @@ void keep_saw(const Normal& n, const Vector18& x, SawTooth& saw) {
 void fit(std::vector<Equation>& equations, bool with_saw, SweepResiduals& sweep) {
   Vector18 x = Vector18::Zero();
   Normal n;
-  for (int round = 0; round < 4; ++round) {
-    sweep.sigma_m = spread(equations, x);
-    weigh(equations, x, sweep.sigma_m);
+  for (int round = 0; round < 6; ++round) {
+    weigh(equations, x, round >= 4);
     n = normal_of(equations);
     x = solve_shape(n);
   }
-  sweep.sigma_m = spread(equations, x);
-  const double scale = 1 / (sweep.sigma_m * sweep.sigma_m);
-  n.H *= scale;
-  n.g *= scale;
+  sweep.sigma_m = robust_sigma(equations, x, [](const Equation&) { return true; });
   keep_shape(n, x, sweep.shape);
   if (with_saw) keep_saw(n, x, sweep.saw);
   sweep.fitted = true;
@@ -124,7 +148,7 @@ void fill_bins(const std::vector<ResidualRow>& rows, const std::vector<double>& 
     const double place = phases[i] * static_cast<double>(bins.size());
     PhaseBin& bin = bins[static_cast<std::size_t>(std::clamp(place, 0.0, last))];
     const Eigen::Vector3d n = Eigen::Map<const Eigen::Vector3f>(rows[i].jacobian).cast<double>();
-    const double r = rows[i].value, w = equations.empty() ? 1 : equations[i].weight;
+    const double r = rows[i].value, w = equations.empty() ? 1 : equations[i].robust;
     if (!(w > 0)) continue;
     bin.n += w;
     bin.r += w * r;

@@ -22,7 +22,8 @@ struct PhaseBin {
 
 /// A sweep's error as a motion over phase s in [0, 1], in the body's axes at mid-sweep:
 ///   xi(s) = xi0 + (s - 1/2) slope + ((s - 1/2)^2 - 1/12) bend,     r_i = J_i xi(s_i)
-/// fitted with Tukey's weights. `information` is that of (slope, bend) with xi0 free, by the spread of its residuals.
+/// fitted with Huber's, then Tukey's weights, level surfaces and others each by the spread of their residuals.
+/// `information` is that of (slope, bend) with xi0 free.
 struct SweepShape {
   using Vector12 = Eigen::Matrix<double, 12, 1>;
   using Matrix12 = Eigen::Matrix<double, 12, 12>;

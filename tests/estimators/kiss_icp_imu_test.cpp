@@ -77,13 +77,13 @@ core::ImuSample mean_sample(const Drive& drive, const SE3& T_body_imu, double en
   return sample;
 }
 
-struct Setup {
+struct Samples {
   double seconds = 4.5;
   double group_delay_s = 0;
   double hole_from_s = 1e9, hole_to_s = 1e9;  ///< samples left out
 };
 
-std::vector<SweepOutcome> run(Estimator& estimator, const Drive& drive, const core::Rig& sheet, const Setup& setup) {
+std::vector<SweepOutcome> run(Estimator& estimator, const Drive& drive, const core::Rig& sheet, const Samples& setup) {
   const std::vector<Vector3d> world = tests::landmarks(45, 3, 0.9);
   const tests::Motion lidar = [&](double t) -> SE3 { return drive.T_world_body(t) * sheet.lidars[0].T_body_lidar; };
   std::vector<SweepOutcome> outcomes;
@@ -154,7 +154,7 @@ TEST(KissIcpImu, UnderHardBrakingItBendsSweepsFarLessThanKissIcp) {
 }
 
 TEST(KissIcpImu, HonoursTheStampsDelay) {
-  const Setup late{.group_delay_s = 0.03};
+  const Samples late{.group_delay_s = 0.03};
   const core::Rig told = rig(0.03), untold = rig(0);
   KissIcpImu knows({}, context(told)), does_not({}, context(untold));
   const auto a = run(knows, braking(), told, late), b = run(does_not, braking(), untold, late);
