@@ -41,6 +41,19 @@ core::SweepStatus status_of(const core::LidarSweep& sweep, const CtOdometry::Ste
   return step.lost ? core::SweepStatus::lost : core::SweepStatus::ok;
 }
 
+/// What was unusual, for the log.
+std::string note_of(const core::LidarSweep& sweep, const CtOdometry::Step& step) {
+  std::string note;
+  if (step.span.clipped() > 0) {
+    note = fmt::format("{} stamps outside the sweep, moved to its begin or end", step.span.clipped());
+  }
+  if (!sweep.empty() && !step.span.elastic()) {
+    note += note.empty() ? "" : "; ";
+    note += "no two stamps differ: taken as rigid";
+  }
+  return note;
+}
+
 }  // namespace
 
 CtIcp::CtIcp(const CtIcpOptions& options, const EstimatorContext& context)
@@ -59,6 +72,7 @@ SweepOutcome CtIcp::add(const core::LidarSweep& sweep) {
                     .reference = step.motion.t1,
                     .status = status_of(sweep, step),
                     .T_map_body = step.motion.poses.back()};
+  outcome.note = note_of(sweep, step);
   if (level_ != core::DiagnosticsLevel::none) {
     outcome.diagnostics = record_of(sweep, odometry_, step, level_);
     stopwatch.lap("record");

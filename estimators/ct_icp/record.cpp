@@ -17,6 +17,7 @@ core::ResidualRow row_of(const core::LidarSweep& sweep, const Keypoint& keypoint
   row.weight = static_cast<float>(weight);
   for (int k = 0; k < 6; ++k) row.jacobian[k] = static_cast<float>(J[k]);
   row.sensor = sweep.sensor;
+  row.point = keypoint.point;
   return row;
 }
 

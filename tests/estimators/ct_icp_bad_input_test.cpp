@@ -75,6 +75,7 @@ TEST_F(CtIcpBadInput, EqualStampsAreRegisteredAsARigidSweep) {
     ASSERT_EQ(outcome.motion.size(), 1U);
     EXPECT_EQ(outcome.motion[0].model, core::SegmentModel::held);
     EXPECT_EQ(outcome.motion[0].t0, flash.begin);
+    EXPECT_EQ(outcome.note, "no two stamps differ: taken as rigid");
     EXPECT_EQ(outcome.result.reference, flash.end);
     EXPECT_LT(tests::pose_difference(outcome.result.T_map_body, SE3::Identity()), 0.01);
     EXPECT_EQ(outcome.diagnostics.H_prior.norm(), 0);
@@ -95,6 +96,15 @@ TEST_F(CtIcpBadInput, StampsInTheWrongUnitStillTellBeginFromEnd) {
   ASSERT_EQ(motion.poses.size(), 2U);
   EXPECT_LT(tests::pose_difference(motion.poses[0], body(0.7)), 0.03);
   EXPECT_LT(tests::pose_difference(motion.poses[1], body(0.8)), 0.03);
+}
+
+TEST_F(CtIcpBadInput, SaysHowManyStampsWereOutsideTheSweep) {
+  make();
+  feed_until(3);
+  LidarSweep late = sweep(4);
+  for (std::size_t i = 0; i < 7; ++i) late.t_ns[late.size() - 1 - i] = 120'000'000;
+  EXPECT_EQ(estimator_->add(late).note, "7 stamps outside the sweep, moved to its begin or end");
+  EXPECT_EQ(estimator_->add(sweep(5)).note, "");
 }
 
 TEST(SweepSpan, StampsOutsideAreMovedToTheNearerEndAndCounted) {

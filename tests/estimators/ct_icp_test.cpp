@@ -196,6 +196,7 @@ TEST_P(EveryProfile, RecordHoldsRowsAtTheirTimeAndInformationAtTheEnd) {
     if (!a.used) continue;
     const core::ResidualRow& row = record.rows[next++];
     const Keypoint& keypoint = odometry_->keypoints()[k];
+    EXPECT_EQ(row.point, keypoint.point);
     const SE3 T = step.motion.pose(sweep_.begin + core::Duration(row.t_ns));
     EXPECT_NEAR(row.value, a.n_map.dot(T * keypoint.p_body - a.q_map), 1e-6);
     core::Row6 J;
