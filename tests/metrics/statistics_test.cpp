@@ -78,6 +78,7 @@ TEST(Registry, EveryNameEndsInItsUnit) {
     const std::string ending = unit == "%"          ? "_percent"
                                : unit == "MB"       ? "_mb"
                                : unit == "1"        ? ""
+                               : unit == "m/s"      ? "_m_per_s"
                                : unit == "deg/100m" ? "_deg_per_100m"
                                                     : "_" + unit;
     EXPECT_TRUE(name.ends_with(ending)) << name << " in " << unit;

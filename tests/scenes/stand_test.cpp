@@ -187,6 +187,8 @@ TEST(Stand, EveryOptionChangesTheScene) {
                                                  {"slab_tilt_mm", "0"},
                                                  {"relief_rms_mm", "1"},
                                                  {"joint_depth_mm", "1"},
+                                                 {"apron_south_m", "-200"},
+                                                 {"with_surroundings", "false"},
                                                  {"with_aircraft", "false"},
                                                  {"with_equipment", "false"},
                                                  {"cones", "3"},
