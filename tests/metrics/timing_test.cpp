@@ -205,7 +205,9 @@ TEST(ResidualTiming, SeriesAndRowsAreThereAndTheBandHoldsTheTruth) {
     if (s.name.find("by_phase") == std::string::npos) continue;
     ASSERT_EQ(s.low.size(), s.y.size()) << s.name;
     for (std::size_t b = 0; b < s.y.size(); ++b) {
-      if (std::isfinite(s.y[b])) EXPECT_LE(s.low[b], s.high[b]) << s.name;
+      if (std::isfinite(s.y[b])) {
+        EXPECT_LE(s.low[b], s.high[b]) << s.name;
+      }
     }
   }
 }
