@@ -1,16 +1,12 @@
 #include "reports/page_comparisons.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
-
-#include "reports/page_series.h"
 
 namespace tarmac::reports {
 
 namespace {
 
 using metrics::PairedComparison;
-using nlohmann::json;
 
 /// Errors only: times of one machine are no sample over seeds.
 constexpr const char* kCompared[] = {"end_error_percent",          "ate_se3_rmse_m",       "kitti_trans_percent",
@@ -43,24 +39,13 @@ std::vector<PairedComparison> both_ways(std::vector<const metrics::Evaluation*> 
 
 }  // namespace
 
-json comparisons(const std::vector<ReportRun>& runs) {
-  json list = json::array();
+std::vector<PairedComparison> comparisons(const std::vector<ReportRun>& runs) {
+  std::vector<PairedComparison> list;
   if (runs.size() < 2) return list;
   const auto all = all_of(runs);
   for (const char* metric : kCompared) {
     for (const PairedComparison& c : both_ways(all, metric)) {
-      if (c.pairs == 0) continue;
-      const bool few = c.difference == metrics::Difference::too_few;
-      list.push_back({{"metric", c.metric},
-                      {"a", c.a},
-                      {"b", c.b},
-                      {"pairs", c.pairs},
-                      {"a_lower", c.a_lower},
-                      {"ratio", number(c.ratio)},
-                      {"low", few ? json() : number(c.low)},
-                      {"high", few ? json() : number(c.high)},
-                      {"p", number(c.p)},
-                      {"difference", metrics::name_of(c.difference)}});
+      if (c.pairs > 0) list.push_back(c);
     }
   }
   return list;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "metrics/degeneracy/rule.h"
 #include "metrics/registry.h"
 #include "reports/page.h"
 #include "reports/page_comparisons.h"
@@ -19,7 +22,84 @@ using nlohmann::json;
 /// Series that belong to the truth: the same for every estimator of a run, so written once.
 const std::set<std::string> kTruthSeries = {"path_true", "path_degenerate", "speed_vs_time", "yaw_rate_vs_time"};
 
-bool is_of_truth(const std::string& series) { return kTruthSeries.contains(series) || series.starts_with("oracle_"); }
+bool is_of_truth(const std::string& series) {
+  return kTruthSeries.contains(series) || series.starts_with("oracle_");
+}
+
+/// Six significant digits: finer than any line can show, and half the size. NaN is null.
+json number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
+}
+
+json thinned(const std::vector<double>& values, std::size_t step) {
+  json list = json::array();
+  for (std::size_t i = 0; i < values.size(); i += step) list.push_back(number(values[i]));
+  return list;
+}
+
+/// Writes series; every distinct x once.
+class SeriesWriter {
+ public:
+  explicit SeriesWriter(std::size_t max_samples) : max_samples_(max_samples) {}
+
+  /// {x_label, y_label, first, step, x: number of its grid, y, low?, high?}
+  json write(const metrics::Series& series) {
+    const std::size_t step = std::max<std::size_t>(1, (series.x.size() + max_samples_ - 1) / max_samples_);
+    const json grid = thinned(series.x, step);
+    const auto [entry, is_new] = number_of_.try_emplace(grid.dump(), grids_.size());
+    if (is_new) grids_.push_back(grid);
+    json out = {{"x_label", series.x_label}, {"y_label", series.y_label},   {"step", step}, {"first", 0},
+                {"x", entry->second},        {"y", thinned(series.y, step)}};
+    if (!series.low.empty() && !series.high.empty()) {
+      out["low"] = thinned(series.low, step);
+      out["high"] = thinned(series.high, step);
+    }
+    return out;
+  }
+
+  const json& grids() const { return grids_; }
+
+ private:
+  std::size_t max_samples_;
+  std::map<std::string, std::size_t> number_of_;  ///< by the grid's text
+  json grids_ = json::array();
+};
+
+json to_json(const metrics::PairedComparison& c) {
+  const bool few = c.difference == metrics::Difference::too_few;
+  return {{"metric", c.metric},
+          {"a", c.a},
+          {"b", c.b},
+          {"pairs", c.pairs},
+          {"a_lower", c.a_lower},
+          {"ratio", number(c.ratio)},
+          {"low", few ? json() : number(c.low)},
+          {"high", few ? json() : number(c.high)},
+          {"p", number(c.p)},
+          {"difference", metrics::name_of(c.difference)}};
+}
+
+json to_json(const metrics::Finding& finding) {
+  json evidence = json::array();
+  for (const auto& entry : finding.evidence) {
+    evidence.push_back({{"name", entry.name},
+                        {"unit", entry.unit},
+                        {"value", entry.value ? number(*entry.value) : json()},
+                        {"low", entry.low ? number(*entry.low) : json()},
+                        {"high", entry.high ? number(*entry.high) : json()}});
+  }
+  return {{"topic", finding.topic},
+          {"verdict", metrics::name_of(finding.verdict)},
+          {"words", finding.words},
+          {"evidence", evidence}};
+}
+
+json comparison_table(const std::vector<ReportRun>& runs) {
+  json list = json::array();
+  for (const auto& c : comparisons(runs)) list.push_back(to_json(c));
+  return list;
+}
 
 json to_json(const metrics::Row& row) {
   json out = {{"estimate", row.estimate}, {"metric", row.metric}, {"unit", row.unit}, {"status", row.status}};
@@ -58,7 +138,8 @@ void collect(const ReportInput& input, const ReportRun& run, const metrics::Eval
              SeriesWriter& writer, Collected& into) {
   remember(into.estimators, evaluation.estimator);
   remember(into.seeds, evaluation.seed);
-  json rows = json::array(), series = json::object();
+  json rows = json::array(), series = json::object(), findings = json::array();
+  for (const auto& finding : evaluation.findings) findings.push_back(to_json(finding));
   for (const auto& row : evaluation.rows) {
     rows.push_back(to_json(row));
     into.metrics.insert(row.metric);
@@ -78,6 +159,7 @@ void collect(const ReportInput& input, const ReportRun& run, const metrics::Eval
                        {"coverage", number(evaluation.coverage)},
                        {"rows", rows},
                        {"series", series},
+                       {"findings", findings},
                        {"log", log_of(input, run, evaluation.estimator)}});
 }
 
@@ -177,8 +259,11 @@ std::string page_data(const ReportInput& input, const Pictures& pictures) {
                         {"seeds", collected.seeds},
                         {"metrics", metric_table(collected.metrics)},
                         {"runs", collected.runs},
-                        {"comparisons", comparisons(input.runs)},
+                        {"comparisons", comparison_table(input.runs)},
                         {"truth", collected.truth},
+                        {"oracle_thresholds",
+                         {{"6dof", metrics::DegeneracyRule::pose().degenerate_below},
+                          {"12dof_difference", metrics::DegeneracyRule::difference().degenerate_below}}},
                         {"grids", writer.grids()},
                         {"pictures", to_json(pictures)},
                         {"command", command_of(input.runs)},

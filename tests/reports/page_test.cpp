@@ -199,6 +199,45 @@ TEST(PageData, GivesNoIntervalWhereSeedsAreTooFew) {
   EXPECT_TRUE(data_of(assemble_page(one_seed, {}))["comparisons"].empty());
 }
 
+TEST(PageData, TellsFindingsWithTheirEvidence) {
+  ReportInput input = example::input();
+  metrics::Finding finding;
+  finding.topic = "clock-offset";
+  finding.verdict = metrics::Finding::Verdict::found;
+  finding.words = "Clocks differ.";
+  finding.evidence = {{"offset", 5.02, "ms", 4.9, 5.1}, {"left", std::nullopt, "m", std::nullopt, std::nullopt}};
+  input.runs[0].evaluations[1].findings = {finding};
+  const json data = data_of(assemble_page(input, {}));
+  const json& findings = run_of(data, "shaky", 1)["findings"];
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0]["topic"], "clock-offset");
+  EXPECT_EQ(findings[0]["verdict"], "found") << "the word that the page's script goes by";
+  EXPECT_EQ(findings[0]["words"], "Clocks differ.");
+  EXPECT_EQ(findings[0]["evidence"][0]["value"], 5.02);
+  EXPECT_EQ(findings[0]["evidence"][0]["high"], 5.1);
+  EXPECT_TRUE(findings[0]["evidence"][1]["value"].is_null());
+  EXPECT_TRUE(run_of(data, "steady", 1)["findings"].empty());
+}
+
+TEST(PageData, KeepsWhatBelongsToTheOracleWithTheTruth) {
+  ReportInput input = example::input();
+  for (auto& run : input.runs) {
+    for (auto& evaluation : run.evaluations) {
+      if (evaluation.series.empty()) continue;
+      evaluation.series.push_back(
+          {"oracle_lambda_min_6dof_vs_time", "time [s]", "eigenvalue [1]", {0, 1}, {2, 3}, {}, {}});
+      evaluation.series.push_back({"path_degenerate", "x [m]", "y [m]", {0, 1}, {2, 3}, {}, {}});
+      evaluation.series.push_back({"lambda_min_6dof_vs_time", "time [s]", "eigenvalue [1]", {0, 1}, {4, 5}, {}, {}});
+    }
+  }
+  const json data = data_of(assemble_page(input, {}));
+  for (const char* name : {"oracle_lambda_min_6dof_vs_time", "path_degenerate"}) {
+    EXPECT_TRUE(data["truth"]["1"].contains(name)) << name;
+    EXPECT_FALSE(run_of(data, "steady", 1)["series"].contains(name)) << name;
+  }
+  EXPECT_TRUE(run_of(data, "steady", 1)["series"].contains("lambda_min_6dof_vs_time"));
+}
+
 TEST(PageSeries, ShortOnesLeaveTheirShareToTheLong) {
   std::vector<ReportRun> runs(1);
   metrics::Evaluation evaluation;

@@ -21,6 +21,13 @@ function ofMethod(state, name) {
   return both.flat();
 }
 
+/** The oracle's threshold along its line. */
+function threshold(state, name) {
+  const y = state.data.oracle_thresholds?.[name.replace(/^lambda_min_|_vs_time$/g, "")];
+  const [line] = truthLines(state, `oracle_${name}`);
+  return y && line ? [{ name: "oracle's threshold", color: "--ink", x: [line.x[0], line.x[line.x.length - 1]], y: [y, y], dash: [6, 4], width: 1 }] : [];
+}
+
 function timeline(state) {
   const usable = kViews.filter(([, , name]) => labelsOf(state.data, name) || labelsOf(state.data, `oracle_${name}`) || labelsOf(state.data, `surface_${name}`));
   if (usable.length === 0) return null;
@@ -28,8 +35,7 @@ function timeline(state) {
   const lines = () => [
     ...truthLines(state, `oracle_${view[2]}`).map((line) => ({ ...line, name: "oracle", width: 2 })),
     ...ofMethod(state, view[2]).map((line) => ({ ...line, low: undefined, high: undefined })),
-    ...truthLines(state, `oracle_threshold_${view[2].replace("lambda_min_", "")}`).map((line) => ({ ...line, name: "oracle's threshold", dash: [6, 4], width: 1 })),
-    ...linesOf(state, `threshold_${view[2].replace("lambda_min_", "")}`).slice(0, 1).map((line) => ({ ...line, name: "methods' threshold", color: "--muted", dash: [2, 4], width: 1, low: undefined, high: undefined })),
+    ...threshold(state, view[2]),
   ];
   const firstSeed = () => String(state.seed === "all" ? state.data.seeds[0] : state.seed);
   const oracle = (name) => state.data.truth[firstSeed()]?.[`oracle_${name}`];
@@ -52,7 +58,7 @@ function timeline(state) {
   const several = state.data.seeds.length > 1 ? " Shades and stretches are those of the chosen seed, or of the first one." : "";
   return figure("Smallest eigenvalue over time",
     `How firmly a sweep's residuals hold the direction that they hold least: low means free. The dark line is the oracle's, by exact normals, and the shade is where it calls the geometry degenerate; a method that knows its limits falls with it.${several}`,
-    el("div", { class: "chart-bar" }, choice, el("span", { class: "axis-name" }, labelsOf(state.data, `oracle_${view[2]}`) ? "Dark: oracle. Dashed: thresholds." : "")), made.element, said);
+    el("div", { class: "chart-bar" }, choice, el("span", { class: "axis-name" }, labelsOf(state.data, `oracle_${view[2]}`) ? "Dark: oracle. Dashed: its threshold." : "")), made.element, said);
 }
 
 /** Who calls what degenerate, in words: the oracle first, then every method. */

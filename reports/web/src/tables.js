@@ -91,6 +91,9 @@ export function whyMissing(missing) {
   return [...reasons].map(([why, labels]) => `No ${labels.length > 1 ? `${labels.slice(0, -1).join(", ")} or ${labels.at(-1)}` : labels[0]}: ${why}.`).join(" ");
 }
 
+/** Of signed metrics (lags, scales) the one nearer to 0 is the better one; the others are never negative. */
+const isLess = (a, b) => Math.abs(a) < Math.abs(b);
+
 export class SummaryTable {
   /** `wanted`: columns as [metric, label]; the summary's, with how the runs ended, when nothing else is said. */
   constructor(state, wanted) {
@@ -134,7 +137,7 @@ export class SummaryTable {
     if (!(this.state.data.metrics[metric]?.lower_is_better)) return null;
     const finite = rows.filter((row) => isNumber(row.cells[metric].median));
     if (finite.length < 2) return null;
-    return finite.reduce((a, b) => (b.cells[metric].median < a.cells[metric].median ? b : a)).name;
+    return finite.reduce((a, b) => (isLess(b.cells[metric].median, a.cells[metric].median) ? b : a)).name;
   }
 
   rowsOf(row, best, count) {
@@ -206,7 +209,7 @@ export class FullTable {
     const best = (row) => {
       const finite = estimators.filter((name) => isNumber(row.cells[name].median));
       if (!this.state.data.metrics[row.metric]?.lower_is_better || finite.length < 2) return null;
-      return finite.reduce((a, b) => (row.cells[b].median < row.cells[a].median ? b : a));
+      return finite.reduce((a, b) => (isLess(row.cells[b].median, row.cells[a].median) ? b : a));
     };
     this.count.textContent = `${shown.length} of ${all.length}${found.length > shown.length ? `; ${found.length - shown.length} have no value` : ""}`;
     const body = sortRows(shown, key, ascending).map((row) => {
