@@ -31,6 +31,7 @@ Oracle oracle_of(const std::vector<scenarios::Override>& changes, const std::fil
   input.scene = std::make_shared<const scenes::Scene>(scenes::make_scene(scenario.scene, input.seed));
   input.motion = sim::truth::make_motion(scenario.motion, scenario.duration(), input.scene->ground, input.seed);
   input.rig = scenario.rig;
+  input.resolved_motion = sim::truth::resolve_motion(scenario.motion);
   sim::simulate(input, {.threads = 2}, folder / "recording", folder / "truth", [](double, const std::string&) {});
 
   const Recording recording = Recording::open(folder / "recording");
