@@ -387,6 +387,13 @@ void ConfigNode::set(const std::string& dotted_path, const std::string& yaml_val
   state_->sets->insert(dotted_path);
 }
 
+bool ConfigNode::given_by_set() const {
+  if (!state_->sets) return false;
+  for (const std::string& path : *state_->sets)
+    if (state_->path == path || state_->path.starts_with(path + ".")) return true;
+  return false;
+}
+
 void ConfigNode::fail(const std::string& message) const {
   if (state_->sets) {
     for (const std::string& path : *state_->sets) {

@@ -52,6 +52,9 @@ class ConfigNode {
   /// "list.0.x"); its errors are reported as coming from `--set path=value`.
   void set(const std::string& dotted_path, const std::string& yaml_value);
 
+  /// True when this, or a block around it, came from set(): paths in it are then the command line's.
+  bool given_by_set() const;
+
   /// "file.yaml:9: rig.lidar.rate_hz: message"
   [[noreturn]] void fail(const std::string& message) const;
   [[noreturn]] void fail_at(const std::string& child_name, const std::string& message) const;

@@ -11,23 +11,27 @@
 namespace tarmac::core {
 namespace {
 
-/// Three columns: times, sensors, and value, weight, jacobian one after the other.
+/// Four columns: times, sensors, points, and value, weight, jacobian one after the other.
 void add_rows(const std::vector<ResidualRow>& rows, ChunkData& data) {
   std::vector<std::int32_t> t_ns;
   std::vector<std::uint16_t> sensor;
+  std::vector<std::uint32_t> point;
   std::vector<float> values;
   t_ns.reserve(rows.size());
   sensor.reserve(rows.size());
+  point.reserve(rows.size());
   values.reserve(8 * rows.size());
   for (const ResidualRow& row : rows) {
     t_ns.push_back(row.t_ns);
     sensor.push_back(row.sensor);
+    point.push_back(row.point);
     values.push_back(row.value);
     values.push_back(row.weight);
     values.insert(values.end(), row.jacobian, row.jacobian + 6);
   }
   data.add<std::int32_t>(t_ns);
   data.add<std::uint16_t>(sensor);
+  data.add<std::uint32_t>(point);
   data.add<float>(values);
 }
 
@@ -38,12 +42,13 @@ void add_rows(const std::vector<ResidualRow>& rows, ChunkData& data) {
 std::vector<ResidualRow> rows_of(const ChunkData& data, std::size_t column, const std::string& where) {
   const auto t_ns = data.column<std::int32_t>(column);
   const auto sensor = data.column<std::uint16_t>(column + 1);
-  const auto values = data.column<float>(column + 2);
-  if (sensor.size() != t_ns.size() || values.size() != 8 * t_ns.size()) wrong_shape(where);
+  const auto point = data.column<std::uint32_t>(column + 2);
+  const auto values = data.column<float>(column + 3);
+  if (sensor.size() != t_ns.size() || point.size() != t_ns.size() || values.size() != 8 * t_ns.size()) wrong_shape(where);
   std::vector<ResidualRow> rows(t_ns.size());
   for (std::size_t i = 0; i < t_ns.size(); ++i) {
     const float* v = values.data() + 8 * i;
-    rows[i] = {t_ns[i], v[0], v[1], {v[2], v[3], v[4], v[5], v[6], v[7]}, sensor[i]};
+    rows[i] = {t_ns[i], v[0], v[1], {v[2], v[3], v[4], v[5], v[6], v[7]}, sensor[i], point[i]};
   }
   return rows;
 }
@@ -77,7 +82,7 @@ SweepDiagnostics from_chunk(const ChunkData& data, const std::string& where) {
   s.H_data = Eigen::Map<const Matrix6>(H_data.data());
   s.H_prior = Eigen::Map<const Matrix6>(H_prior.data());
   s.rows = rows_of(data, 4, where);
-  s.surface = rows_of(data, 7, where);
+  s.surface = rows_of(data, 8, where);
   return s;
 }
 

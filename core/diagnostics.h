@@ -20,6 +20,10 @@ enum class DiagnosticsLevel : std::uint8_t {
 };
 DiagnosticsLevel diagnostics_level(const std::string& name);  ///< throws InputError
 
+/// The index of a point that is not known. Points come in firing order: where stamps are wrong, the index still says
+/// which point came before which.
+inline constexpr std::uint32_t kNoPoint = 0xFFFFFFFF;
+
 /// One scalar residual of the last iteration. The Jacobian is by the pose at the point's own time, body frame, right
 /// perturbation, translation first: r(T Exp(xi)) = value + jacobian xi. A vector residual gives one row an axis.
 /// A point-to-surface row has value = n^T (p_map - q_map), n the surface's normal turned towards the sensor: positive
@@ -30,6 +34,7 @@ struct ResidualRow {
   float weight = 0;       ///< multiplies value^2 in the cost, robust loss included
   float jacobian[6] = {};
   std::uint16_t sensor = 0;
+  std::uint32_t point = kNoPoint;  ///< index into the sweep's points as the method was given them
 };
 
 struct SweepDiagnostics {

@@ -9,6 +9,11 @@
 
 #include "core/vector_loop.h"
 
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
+#define TARMAC_HAS_AVX2_FUNCTIONS
+#endif
+
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -60,40 +65,73 @@ inline void cos_sin_turn(std::uint32_t bits, float& c, float& s) {
 
 constexpr std::size_t kBatchBlocks = 64;  ///< blocks of four draws whose arithmetic is vectorised together
 
-/// Box-Muller over blocks first, first + 1, ... (none of which carries into the counter's upper word), in the order of
-/// their draws. The same bits as Random123's Philox, whose loop over rounds does not vectorise.
-TARMAC_VECTOR_LOOP void normals_of_blocks(std::uint32_t key0, std::uint32_t key1, std::uint32_t counter_low,
-                                          std::uint32_t counter_high, std::uint32_t counter_name, std::size_t blocks,
-                                          float* draws) {
-  std::uint32_t x0[kBatchBlocks], x1[kBatchBlocks], x2[kBatchBlocks], x3[kBatchBlocks];
-  for (std::size_t k = 0; k < blocks; ++k) {
-    std::uint32_t c0 = counter_low + static_cast<std::uint32_t>(k), c1 = counter_high, c2 = 0, c3 = counter_name;
-    std::uint32_t k0 = key0, k1 = key1;
-#pragma GCC unroll 10
-    for (int round = 0; round < 10; ++round) {
-      const std::uint64_t p0 = static_cast<std::uint64_t>(PHILOX_M4x32_0) * c0;
-      const std::uint64_t p1 = static_cast<std::uint64_t>(PHILOX_M4x32_1) * c2;
-      const std::uint32_t next0 = static_cast<std::uint32_t>(p1 >> 32) ^ c1 ^ k0;
-      const std::uint32_t next2 = static_cast<std::uint32_t>(p0 >> 32) ^ c3 ^ k1;
-      c1 = static_cast<std::uint32_t>(p1);
-      c3 = static_cast<std::uint32_t>(p0);
-      c0 = next0;
-      c2 = next2;
-      k0 += PHILOX_W32_0;
-      k1 += PHILOX_W32_1;
-    }
-    x0[k] = c0, x1[k] = c1, x2[k] = c2, x3[k] = c3;
+struct BlockRange {
+  std::uint32_t key[2];
+  std::uint32_t counter_low, counter_high, counter_name;  ///< of the first block; none carries into the upper word
+  std::size_t blocks;
+};
+
+/// Philox over many blocks; of each, words 0 and 2 into `radius_bits` and words 1 and 3 into `angle_bits`.
+void blocks_one_by_one(const BlockRange& range, std::size_t first, std::uint32_t* radius_bits,
+                       std::uint32_t* angle_bits) {
+  for (std::size_t k = first; k < range.blocks; ++k) {
+    const Philox::ctr_type counter = {
+        {range.counter_low + static_cast<std::uint32_t>(k), range.counter_high, 0, range.counter_name}};
+    const auto b = Philox()(counter, Philox::key_type{{range.key[0], range.key[1]}});
+    radius_bits[2 * k] = b[0];
+    angle_bits[2 * k] = b[1];
+    radius_bits[2 * k + 1] = b[2];
+    angle_bits[2 * k + 1] = b[3];
   }
-  for (std::size_t k = 0; k < blocks; ++k) {
-    const float r0 = std::sqrt(-2.0f * log_unit(unit_float(x0[k])));
-    const float r1 = std::sqrt(-2.0f * log_unit(unit_float(x2[k])));
-    float c0, s0, c1, s1;
-    cos_sin_turn(x1[k], c0, s0);
-    cos_sin_turn(x3[k], c1, s1);
-    draws[4 * k] = r0 * c0;
-    draws[4 * k + 1] = r0 * s0;
-    draws[4 * k + 2] = r1 * c1;
-    draws[4 * k + 3] = r1 * s1;
+}
+
+#ifdef TARMAC_HAS_AVX2_FUNCTIONS
+/// The same bits, four blocks side by side: a word in the lower half of each 64-bit lane, what is above it ignored.
+__attribute__((target("avx2"))) std::size_t blocks_by_fours(const BlockRange& range, std::uint32_t* radius_bits,
+                                                            std::uint32_t* angle_bits) {
+  const __m256i m0 = _mm256_set1_epi64x(PHILOX_M4x32_0), m1 = _mm256_set1_epi64x(PHILOX_M4x32_1);
+  std::size_t k = 0;
+  for (; k + 4 <= range.blocks; k += 4) {
+    __m256i c0 = _mm256_add_epi32(_mm256_set1_epi64x(range.counter_low + static_cast<std::uint32_t>(k)),
+                                  _mm256_set_epi64x(3, 2, 1, 0));
+    __m256i c1 = _mm256_set1_epi64x(range.counter_high), c2 = _mm256_setzero_si256();
+    __m256i c3 = _mm256_set1_epi64x(range.counter_name);
+    std::uint32_t key0 = range.key[0], key1 = range.key[1];
+    for (int round = 0; round < 10; ++round) {
+      const __m256i p0 = _mm256_mul_epu32(c0, m0), p1 = _mm256_mul_epu32(c2, m1);
+      c0 = _mm256_xor_si256(_mm256_srli_epi64(p1, 32), _mm256_xor_si256(c1, _mm256_set1_epi64x(key0)));
+      c2 = _mm256_xor_si256(_mm256_srli_epi64(p0, 32), _mm256_xor_si256(c3, _mm256_set1_epi64x(key1)));
+      c1 = p1;
+      c3 = p0;
+      key0 += PHILOX_W32_0;
+      key1 += PHILOX_W32_1;
+    }
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(radius_bits + 2 * k),
+                        _mm256_blend_epi32(c0, _mm256_slli_epi64(c2, 32), 0xaa));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(angle_bits + 2 * k),
+                        _mm256_blend_epi32(c1, _mm256_slli_epi64(c3, 32), 0xaa));
+  }
+  return k;
+}
+#endif
+
+void blocks_of(const BlockRange& range, std::uint32_t* radius_bits, std::uint32_t* angle_bits) {
+  std::size_t done = 0;
+#ifdef TARMAC_HAS_AVX2_FUNCTIONS
+  static const bool has_avx2 = __builtin_cpu_supports("avx2");
+  if (has_avx2) done = blocks_by_fours(range, radius_bits, angle_bits);
+#endif
+  blocks_one_by_one(range, done, radius_bits, angle_bits);
+}
+
+TARMAC_VECTOR_LOOP void box_muller(std::size_t pairs, const std::uint32_t* __restrict radius_bits,
+                                   const std::uint32_t* __restrict angle_bits, float* __restrict draws) {
+  for (std::size_t k = 0; k < pairs; ++k) {
+    const float radius = std::sqrt(-2.0f * log_unit(unit_float(radius_bits[k])));
+    float c, s;
+    cos_sin_turn(angle_bits[k], c, s);
+    draws[2 * k] = radius * c;
+    draws[2 * k + 1] = radius * s;
   }
 }
 
@@ -138,13 +176,19 @@ void RandomStream::uniforms(std::uint64_t first, std::span<float> out) const {
 void RandomStream::normals(std::uint64_t first, std::span<float> out) const {
   // Block k/4 holds draws 4(k/4) .. +3: two Box-Muller pairs. Whole blocks are made and the wanted part copied out.
   float draws[4 * kBatchBlocks];
+  std::uint32_t radius_bits[2 * kBatchBlocks], angle_bits[2 * kBatchBlocks];
   std::size_t done = 0;
   while (done < out.size()) {
     const std::uint64_t first_block = (first + done) / 4, last_block = (first + out.size() - 1) / 4;
     const std::uint64_t before_carry = (std::uint64_t{1} << 32) - (first_block & 0xffffffffu);
     const std::size_t blocks = std::min<std::uint64_t>({kBatchBlocks, last_block - first_block + 1, before_carry});
-    normals_of_blocks(key_[0], key_[1], static_cast<std::uint32_t>(first_block),
-                      static_cast<std::uint32_t>(first_block >> 32), name_hash_ + kNormals, blocks, draws);
+    blocks_of({{key_[0], key_[1]},
+               static_cast<std::uint32_t>(first_block),
+               static_cast<std::uint32_t>(first_block >> 32),
+               name_hash_ + kNormals,
+               blocks},
+              radius_bits, angle_bits);
+    box_muller(2 * blocks, radius_bits, angle_bits, draws);
     const std::size_t skip = (first + done) % 4, take = std::min(4 * blocks - skip, out.size() - done);
     std::copy_n(draws + skip, take, out.begin() + static_cast<std::ptrdiff_t>(done));
     done += take;

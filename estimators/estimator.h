@@ -20,6 +20,7 @@ struct SweepOutcome {
   std::vector<core::Segment> motion;  ///< T_map_body(t) over the sweep: what the method placed its points by
   core::SweepDiagnostics diagnostics;
   std::vector<std::pair<std::string, double>> stages_ms;
+  std::string note;  ///< what was unusual about the sweep, for the log; empty: nothing
 };
 
 /// Complete once constructed; two instances never influence each other. Sweeps come in order, checked: finite points,

@@ -173,6 +173,7 @@ class Runner {
     if (sweep.status == core::SweepStatus::lost) {
       result.log.push_back(fmt::format("sweep {}: lost, the prediction was kept", sweep.index));
     }
+    if (!outcome.note.empty()) result.log.push_back(fmt::format("sweep {}: {}", sweep.index, outcome.note));
     if (!core::se3::all_finite(sweep.T_map_body)) {
       throw std::runtime_error(
           fmt::format("{} returned a pose that is not finite for sweep {}", entry_.name, sweep.index));

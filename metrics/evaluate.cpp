@@ -17,6 +17,7 @@
 #include "metrics/degeneracy/degeneracy.h"
 #include "metrics/drift.h"
 #include "metrics/point_error.h"
+#include "metrics/residuals.h"
 #include "metrics/trajectory_error.h"
 
 namespace tarmac::metrics {
@@ -205,6 +206,17 @@ void put_coverage(std::size_t scored, std::size_t sweeps, RowSet& rows, double& 
   rows.put("coverage_percent", 100 * coverage);
 }
 
+/// What residuals and lag say of timing. Once for the headline estimate.
+void add_timing(const EvaluationInput& input, const EvaluateSettings& settings, const std::vector<PosePair>* pairs,
+                RowSet& rows, Evaluation& evaluation) {
+  Evidence evidence = examine_residuals(input, settings, rows, evaluation.series);
+  evidence.has_truth = input.truth != nullptr;
+  if (pairs)
+    evidence.lag = add_lag(*pairs, *input.truth->motion, !input.truth->faults.empty(), rows, evaluation.series);
+  const std::vector<Finding> findings = diagnose(evidence);
+  evaluation.findings.insert(evaluation.findings.end(), findings.begin(), findings.end());
+}
+
 void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& settings, const Subject& subject,
                       bool headline, Evaluation& evaluation) {
   const Time t_zero = time_zero(input);
@@ -228,6 +240,7 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
       add_drift_series(subject.pairs, t_zero, evaluation.series);
       add_point_series(points.sweeps, points.histograms, t_zero, evaluation.series);
       gather_map(points.sweeps, evaluation.map);
+      add_timing(input, settings, &subject.pairs, rows, evaluation);
     }
   }
   rows.all_missing(subject.pairs.empty() ? "no sweep is scored"
@@ -249,6 +262,7 @@ void evaluate_alone(const EvaluationInput& input, const EvaluateSettings& settin
   put_coverage(path.x.size(), input.sweeps.count, rows, evaluation.coverage);
   add_run_figures(input, settings, t_zero, rows, evaluation);
   evaluation.series.push_back(std::move(path));
+  add_timing(input, settings, nullptr, rows, evaluation);
   rows.all_missing("the recording has no truth");
   keep_rows(rows, evaluation);
 }

@@ -22,7 +22,19 @@
 ///
 ///   speed_vs_time, yaw_rate_vs_time: the true motion
 ///
+///   residual_mean_by_phase, residual_spread_by_phase: point-to-surface residuals over the point's time in the sweep,
+///     signed mean (positive: in front of the surface) and spread, with 95 % bands from bootstrapping over sweeps
+///
+///   displacement_{forward,left,up}_by_phase: what displacement of the points in body axes those residuals imply
+///
+///   residual_slope_vs_domega, residual_slope_vs_dv and ..._fit: each sweep's slope over the change of motion in it
+///     (residual_slope.h), and the fitted line with +- 1 sigma
+///
+///   error_vs_lag: ATE with the truth taken earlier by a lag
+///
 ///   and those of degeneracy/degeneracy.h
+///
+/// Findings: timing's topics (diagnosis.h).
 #pragma once
 
 #include "core/diagnostics.h"

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;  // 2: findings
 constexpr const char* kMain = "evaluation.json";
 constexpr const char* kCost = "cost.json";
 constexpr const char* kMap = "map_sample.bin";
@@ -81,6 +81,30 @@ Series series_from(const Json& json) {
       number_list(json.at("y")), number_list(json.at("low")), number_list(json.at("high"))};
 }
 
+Json to_json(const Finding& f) {
+  Json evidence = Json::array();
+  for (const Finding::Number& n : f.evidence)
+    evidence.push_back({{"name", n.name},
+                        {"value", number(n.value)},
+                        {"unit", n.unit},
+                        {"low", number(n.low)},
+                        {"high", number(n.high)}});
+  return {{"topic", f.topic}, {"verdict", name_of(f.verdict)}, {"words", f.words}, {"evidence", std::move(evidence)}};
+}
+Finding finding_from(const Json& json) {
+  Finding f;
+  f.topic = json.at("topic");
+  const std::string verdict = json.at("verdict");
+  using Verdict = Finding::Verdict;
+  for (const Verdict known : {Verdict::found, Verdict::nothing_found, Verdict::cannot_be_told})
+    if (verdict == name_of(known)) f.verdict = known;
+  f.words = json.at("words");
+  for (const Json& n : json.at("evidence"))
+    f.evidence.push_back({n.at("name"), optional_number(n.at("value")), n.at("unit"), optional_number(n.at("low")),
+                          optional_number(n.at("high"))});
+  return f;
+}
+
 /// The rows and series of one of the two files.
 Json part(const Evaluation& e, bool cost) {
   Json json{{"format", kFormat}};
@@ -98,6 +122,10 @@ Json part(const Evaluation& e, bool cost) {
   json["series"] = Json::array();
   for (const Series& series : e.series)
     if (is_cost(series) == cost) json["series"].push_back(to_json(series));
+  if (!cost) {
+    json["findings"] = Json::array();
+    for (const Finding& finding : e.findings) json["findings"].push_back(to_json(finding));
+  }
   return json;
 }
 
@@ -159,6 +187,17 @@ MapSample load_map(const std::filesystem::path& file) {
 
 }  // namespace
 
+const char* name_of(Finding::Verdict verdict) {
+  switch (verdict) {
+    case Finding::Verdict::found:
+      return "found";
+    case Finding::Verdict::nothing_found:
+      return "nothing found";
+    default:
+      return "cannot be told";
+  }
+}
+
 const Row* Evaluation::row(const std::string& metric, const std::string& estimate) const {
   for (const Row& row : rows)
     if (row.metric == metric && row.estimate == estimate) return &row;
@@ -195,6 +234,7 @@ Evaluation load_evaluation(const std::filesystem::path& folder) {
     e.message = json.at("message");
     e.coverage = optional_number(json.at("coverage")).value_or(0);
     read_rows_and_series(json, e);
+    for (const Json& finding : json.at("findings")) e.findings.push_back(finding_from(finding));
   });
   if (std::filesystem::exists(folder / kCost))
     with_json(folder / kCost, [&](const Json& json) { read_rows_and_series(json, e); });

@@ -27,6 +27,26 @@ struct Series {
   std::vector<double> low, high;  ///< a band, or empty
 };
 
+/// What was looked for, whether it was found, and by what evidence.
+struct Finding {
+  enum class Verdict : std::uint8_t {
+    found = 0,
+    nothing_found = 1,   ///< looked for; what there is lies within chance
+    cannot_be_told = 2,  ///< this method, recording or plot cannot show it; the words say why
+  };
+  struct Number {
+    std::string name;  ///< in words: "offset"
+    std::optional<double> value;
+    std::string unit;
+    std::optional<double> low, high;
+  };
+  std::string topic;  ///< kebab-case: "stamp-scale"; the registry of diagnosis.h and degeneracy's own
+  Verdict verdict = Verdict::cannot_be_told;
+  std::string words;  ///< a sentence or two for a reader
+  std::vector<Number> evidence;
+};
+const char* name_of(Finding::Verdict verdict);  ///< "found", "nothing found", "cannot be told"
+
 /// A sample of the map that the method built, aligned to the truth (first pose), with each point's error.
 struct MapSample {
   std::vector<Eigen::Vector3f> p_world_m;  ///< where the aligned estimate puts the point
@@ -43,6 +63,7 @@ struct Evaluation {
   double coverage = 0;  ///< share of sweeps that are scored
   std::vector<Row> rows;
   std::vector<Series> series;
+  std::vector<Finding> findings;
   MapSample map;               ///< stored apart, as map_sample.bin
   std::string degeneracy_csv;  ///< every eigenvalue a sweep; stored apart, as degeneracy.csv, and not read back
 

@@ -26,6 +26,7 @@ void RowSet::put(const std::string& metric, double value, const std::string& not
 
 void RowSet::interval(const std::string& metric, double low, double high) {
   Row& row = at(metric);
+  if (!row.value || !std::isfinite(low) || !std::isfinite(high)) return;
   row.ci_low = low;
   row.ci_high = high;
 }

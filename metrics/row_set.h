@@ -16,7 +16,7 @@ class RowSet {
   /// A note ("the positions lie on a line") makes the status "ok: note". NaN becomes n/a.
   /// Throws std::logic_error for a name that the registry has not.
   void put(const std::string& metric, double value, const std::string& note = "");
-  /// Bounds of a value that has been put.
+  /// The interval of a value that was put. NaN leaves it out.
   void interval(const std::string& metric, double low, double high);
   /// Status "n/a: reason".
   void missing(const std::string& metric, const std::string& reason);

@@ -89,7 +89,7 @@ std::string assemble_page(const ReportInput& input, const Pictures& pictures) {
   html += page_style();
   html += "</style>\n</head>\n<body>\n" + header(input);
   html += "<div id=\"legend\"><nav aria-label=\"Contents\"></nav><div class=\"bar\"></div></div>\n<main>\n";
-  for (const char* id : {"summary", "top", "stills", "drift", "phase", "deskew", "timing", "outcome", "provenance"}) {
+  for (const char* id : {"summary", "comparison", "findings", "top", "stills", "drift", "phase", "residuals", "deskew", "degeneracy", "timing", "outcome", "provenance"}) {
     html += fmt::format("<section id=\"{}\"></section>\n", id);
   }
   html += "</main>\n<script type=\"application/json\" id=\"tarmac-data\">" + page_data(input, pictures) + "</script>\n";

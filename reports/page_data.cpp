@@ -17,7 +17,9 @@ namespace {
 using nlohmann::json;
 
 /// Series that belong to the truth: the same for every estimator of a run, so written once.
-const std::set<std::string> kTruthSeries = {"path_true", "speed_vs_time", "yaw_rate_vs_time"};
+const std::set<std::string> kTruthSeries = {"path_true", "path_degenerate", "speed_vs_time", "yaw_rate_vs_time"};
+
+bool is_of_truth(const std::string& series) { return kTruthSeries.contains(series) || series.starts_with("oracle_"); }
 
 json to_json(const metrics::Row& row) {
   json out = {{"estimate", row.estimate}, {"metric", row.metric}, {"unit", row.unit}, {"status", row.status}};
@@ -64,7 +66,7 @@ void collect(const ReportInput& input, const ReportRun& run, const metrics::Eval
   json& truth = into.truth[std::to_string(evaluation.seed)];
   if (truth.is_null()) truth = json::object();
   for (const auto& entry : evaluation.series) {
-    const bool of_truth = kTruthSeries.contains(entry.name);
+    const bool of_truth = is_of_truth(entry.name);
     // A method that failed early may know less of the truth than another.
     if (of_truth && truth.contains(entry.name) && samples(truth[entry.name]) >= entry.y.size()) continue;
     (of_truth ? truth : series)[entry.name] = writer.write(entry);

@@ -110,8 +110,8 @@ std::string how_sure(const Score& best, const Score& second, const metrics::Pair
       return fmt::format("Seed by seed it is the other way round: {} has {:.2g} times {}'s end error ({}).",
                          best.estimator, c.ratio, second.estimator, interval(c));
     case metrics::Difference::not_significant:
-      return fmt::format("Seed by seed the ratio of the two is {:.2g} ({}): these runs do not settle which is better.",
-                         c.ratio, interval(c));
+      return fmt::format("Seed by seed the ratio of the two is {:.2g} ({}){}: these runs do not settle which is better.",
+                         c.ratio, interval(c), c.low > 1 || c.high < 1 ? ", one of several pairs compared" : "");
     case metrics::Difference::too_few:
       break;
   }

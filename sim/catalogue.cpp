@@ -3,6 +3,7 @@
 
 #include "sim/faults/fault_options.h"
 #include "sim/imu/imu_model.h"
+#include "sim/lidar/profile_file.h"
 #include "sim/rig_options.h"
 #include "sim/simulate.h"
 
@@ -26,6 +27,25 @@ std::string noise_text(const lidar::Profile& p) {
   return text;
 }
 
+bool has_origins(const lidar::Profile& p) {
+  return !p.origin_forward_m.empty() || !p.origin_left_m.empty() || !p.origin_up_m.empty();
+}
+
+std::string channel_table_text(const lidar::Profile& p) {
+  const auto origin = [](const std::vector<double>& values, std::size_t c) { return values.empty() ? 0 : values[c]; };
+  std::string text = "  channel  ring  elevation_deg  azimuth_offset_cw_deg  firing_us";
+  text += has_origins(p) ? "  origin forward, left, up [m]\n" : "\n";
+  for (std::size_t c = 0; c < p.channels(); ++c) {
+    text += fmt::format("  {:7}  {:4}  {:13.4f}  {:21.4f}  {:9.3f}", c, static_cast<int>(p.ring[c]), p.elevation_deg[c],
+                        p.azimuth_offset_cw_deg[c], p.firing_us[c]);
+    if (has_origins(p))
+      text += fmt::format("  {:8.4f} {:8.4f} {:8.4f}", origin(p.origin_forward_m, c), origin(p.origin_left_m, c),
+                          origin(p.origin_up_m, c));
+    text += "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<CatalogueEntry> lidar_catalogue() {
@@ -35,7 +55,7 @@ std::vector<CatalogueEntry> lidar_catalogue() {
 }
 
 std::string describe_lidar(const std::string& name) {
-  const lidar::Profile& p = lidar::profile(name);
+  const lidar::Profile p = lidar::is_profile_path(name) ? lidar::load_profile(name) : lidar::profile(name);
   std::string text = fmt::format("{}: {}\n", p.name, p.summary);
   text += fmt::format("  timing      {}\n", timing_text(p));
   text += fmt::format("  sweep       begins at azimuth {} deg (clockwise from sensor +x), turns clockwise\n",
@@ -43,14 +63,12 @@ std::string describe_lidar(const std::string& name) {
   text += fmt::format("  range       {} to {} m, step {} m; {} m on 10 %, {} m on 80 % reflectance\n", p.min_range_m,
                       p.max_range_m, p.range_step_m, p.range_10_percent_m, p.range_80_percent_m);
   text += fmt::format("  noise       {} (1 sigma); constant per channel {} m\n", noise_text(p), p.channel_bias_sigma_m);
-  text += fmt::format("  beams from  a circle of radius {} m, {} m above the sensor frame\n", p.beam_origin_radius_m,
-                      p.beam_origin_height_m);
-  text +=
-      fmt::format("  source      {}\n\n  channel  ring  elevation_deg  azimuth_offset_cw_deg  firing_us\n", p.source);
-  for (std::size_t c = 0; c < p.channels(); ++c)
-    text += fmt::format("  {:7}  {:4}  {:13.2f}  {:21.2f}  {:9.3f}\n", c, static_cast<int>(p.ring[c]),
-                        p.elevation_deg[c], p.azimuth_offset_cw_deg[c], p.firing_us[c]);
-  return text;
+  text += fmt::format("  beams from  a circle of radius {} m, {} m above the sensor frame{}\n", p.beam_origin_radius_m,
+                      p.beam_origin_height_m, has_origins(p) ? ", and from there as below" : "");
+  if (!p.column_window.empty())
+    text += fmt::format("  columns     {} to {} only\n", p.column_window[0], p.column_window[1]);
+  text += fmt::format("  source      {}\n\n", p.source);
+  return text + channel_table_text(p);
 }
 
 std::vector<CatalogueEntry> imu_catalogue() {

@@ -8,6 +8,7 @@
 #include <chrono>
 
 #include "core/error.h"
+#include "core/files.h"
 #include "core/recording.h"
 #include "sim/faults/fault_log.h"
 #include "sim/faults/fault_options.h"
@@ -91,18 +92,17 @@ faults::LidarFaults lidar_faults(const lidar::FiringTable& firing, std::int64_t 
   return realised;
 }
 
-/// Samples as they are recorded.
-std::vector<ImuSample> imu_samples(Setup& setup, const SimulationInput& input) {
+/// Samples as they are recorded, with the errors that the device had.
+SynthesizedImu make_imu(Setup& setup, const SimulationInput& input) {
   if (!setup.rig.has_imu) return {};
   const Time end = std::min(Time(input.duration), input.motion->end());
   ImuOptions mounted = setup.rig.imu;
   mounted.T_body_imu = setup.truth.imus[0].T_body_imu;
-  std::vector<ImuSample> samples =
-      synthesize_imu(*input.motion, mounted, setup.rig.gravity_m_s2, Time{}, end, input.seed, "imu0");
-  const std::size_t lost = faults::apply_imu_faults(setup.faults.imu, input.seed, "imu0", samples);
-  for (truth::Fault& fault : faults::imu_log(setup.faults.imu, lost, samples.size() + lost, "imu0"))
+  SynthesizedImu imu = synthesize_imu(*input.motion, mounted, setup.rig.gravity_m_s2, Time{}, end, input.seed, "imu0");
+  const std::size_t lost = faults::apply_imu_faults(setup.faults.imu, input.seed, "imu0", imu.samples);
+  for (truth::Fault& fault : faults::imu_log(setup.faults.imu, lost, imu.samples.size() + lost, "imu0"))
     setup.log.push_back(std::move(fault));
-  return samples;
+  return imu;
 }
 
 std::size_t write_imu(const RigOptions& options, const std::vector<ImuSample>& samples, RecordingWriter& recording) {
@@ -115,10 +115,7 @@ std::size_t write_imu(const RigOptions& options, const std::vector<ImuSample>& s
 }  // namespace
 
 void check(const SimulationInput& input) {
-  const RigOptions options = read_setup(input).rig;
-  sweeps_within(
-      lidar::FiringTable(lidar::profile(options.lidar.model), {options.lidar.columns, options.lidar.sweep_rate_hz}),
-      input);
+  sweeps_within(firing_table(read_setup(input).rig, input.seed), input);
 }
 
 SimulationSummary simulate(const SimulationInput& input, const SimulationSettings& settings,
@@ -128,21 +125,22 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   const int threads = std::clamp(settings.threads, 1, tbb::info::default_concurrency());
   Setup setup = read_setup(input);
   const RigOptions& options = setup.rig;
-  const lidar::Profile& profile = lidar::profile(options.lidar.model);
 
   const auto tracer =
       std::make_shared<const raycast::Tracer>(input.scene, raycast::TracerSettings{threads, settings.fast});
-  const lidar::SweepSimulator simulator(profile, {options.lidar.columns, options.lidar.sweep_rate_hz},
+  const lidar::SweepSimulator simulator(options.lidar.profile, firing_table(options, input.seed),
                                         {.sensor = 0, .T_body_lidar = setup.truth.lidars[0].T_body_lidar},
                                         options.lidar.noise, input.seed, tracer, input.scene, input.motion);
   const std::int64_t count = sweeps_within(simulator.firing(), input);
 
   const faults::LidarFaults faults = lidar_faults(simulator.firing(), count, input.seed, setup);
-  const std::vector<ImuSample> imu = imu_samples(setup, input);
+  const SynthesizedImu imu = make_imu(setup, input);
 
   RecordingWriter recording(recording_folder, setup.sheet);
   truth::write_truth(truth_folder, input.resolved_scenario, input.resolved_motion, *input.motion, setup.truth,
                      setup.log);
+  std::filesystem::remove(truth_folder / "imu0_errors.json");  // of an earlier run with an IMU
+  if (options.has_imu) write_file(truth_folder / "imu0_errors.json", errors_as_json(imu.errors));
   ChunkWriter labels(truth_folder / "lidar0_labels.chunks");
   const auto after_sweep = [&](const PipelineTotals& so_far) {
     const double share = static_cast<double>(so_far.sweeps + so_far.lost) / static_cast<double>(count);
@@ -153,7 +151,7 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   labels.finish();
 
   SimulationSummary summary;
-  summary.imu_samples = options.has_imu ? write_imu(options, imu, recording) : 0;
+  summary.imu_samples = options.has_imu ? write_imu(options, imu.samples, recording) : 0;
   summary.recording_hash = recording.finish();
   summary.sweeps = totals.sweeps;
   summary.rays = totals.rays;

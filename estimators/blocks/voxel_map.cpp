@@ -50,9 +50,14 @@ bool adjacent(const Voxel& a, const Voxel& b) {
 
 }  // namespace
 
-VoxelMap::VoxelMap(double voxel_size_m, int max_points)
+VoxelMap::VoxelMap(double voxel_size_m, int max_points) : VoxelMap(voxel_size_m, max_points, 0) {
+  // Squared as it stands: rounding the root and squaring it again would move the bound.
+  min_distance2_m2_ = voxel_size_m * voxel_size_m / max_points;
+}
+
+VoxelMap::VoxelMap(double voxel_size_m, int max_points, double min_distance_m)
     : voxel_size_m_(voxel_size_m),
-      min_distance2_m2_(voxel_size_m * voxel_size_m / max_points),
+      min_distance2_m2_(min_distance_m * min_distance_m),
       max_points_(max_points),
       capacity_((static_cast<std::size_t>(max_points) + 1) / 2 * 2),
       stride_(3 * capacity_),
@@ -78,6 +83,7 @@ std::int32_t VoxelMap::insert_voxel(const Voxel& v) {
     b = static_cast<std::int32_t>(counts_.size());
     counts_.push_back(0);
     coordinates_.resize(coordinates_.size() + stride_);
+    births_.resize(births_.size() + capacity_);
   } else {
     b = free_.back();
     free_.pop_back();
@@ -128,7 +134,7 @@ bool VoxelMap::too_near(std::int32_t b, const Eigen::Vector3d& p) const {
   return false;
 }
 
-bool VoxelMap::add(const Eigen::Vector3d& p) {
+bool VoxelMap::add(const Eigen::Vector3d& p, std::int32_t birth) {
   if (!has_voxel(p, voxel_size_m_)) return false;
   const Voxel voxel = voxel_of(p, voxel_size_m_);
   std::int32_t b = find(voxel);
@@ -137,6 +143,7 @@ bool VoxelMap::add(const Eigen::Vector3d& p) {
   } else if (counts_[static_cast<std::size_t>(b)] == max_points_ || too_near(b, p)) {
     return false;
   }
+  births_[static_cast<std::size_t>(b) * capacity_ + static_cast<std::size_t>(counts_[static_cast<std::size_t>(b)])] = birth;
   double* x = block(b) + counts_[static_cast<std::size_t>(b)]++;
   x[0] = p.x();
   x[capacity_] = p.y();
@@ -195,6 +202,26 @@ VoxelMap::Neighbour VoxelMap::nearest(const Eigen::Vector3d& q, double below_m2,
     if (b != kNone) search_block(b, q, best);
   }
   return best;
+}
+
+void VoxelMap::gather(const Eigen::Vector3d& q, double radius_m, std::int32_t latest_birth,
+                      std::vector<Eigen::Vector3d>& points) const {
+  if (!has_voxel(q, voxel_size_m_)) return;
+  const Voxel own = voxel_of(q, voxel_size_m_);
+  for (std::int32_t dx = -1; dx <= 1; ++dx) {
+    for (std::int32_t dy = -1; dy <= 1; ++dy) {
+      for (std::int32_t dz = -1; dz <= 1; ++dz) {
+        const std::int32_t b = find({own.x + dx, own.y + dy, own.z + dz});
+        if (b == kNone) continue;
+        const std::int32_t* births = births_.data() + static_cast<std::size_t>(b) * capacity_;
+        // In order of birth: the rest of the voxel is younger still.
+        for (int k = 0; k < counts_[static_cast<std::size_t>(b)] && births[k] <= latest_birth; ++k) {
+          const Eigen::Vector3d p = point(b, k);
+          if ((p - q).squaredNorm() < radius_m * radius_m) points.push_back(p);
+        }
+      }
+    }
+  }
 }
 
 std::vector<std::vector<Eigen::Vector3d>> VoxelMap::voxels() const {

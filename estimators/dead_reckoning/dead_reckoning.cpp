@@ -1,9 +1,6 @@
 #include "estimators/dead_reckoning/dead_reckoning.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 
 namespace tarmac::estimators {
 
@@ -13,40 +10,26 @@ using core::Time;
 using Eigen::Vector3d;
 
 DeadReckoning::DeadReckoning(const DeadReckoningOptions& options, const EstimatorContext& context)
-    : options_(options), gravity_m_s2_(context.rig.gravity_m_s2) {
-  if (context.rig.imus.empty()) {
-    cannot_start_ = "the rig has no IMU";
-  } else if (!context.rig.calibrated) {
-    cannot_start_ = "the recording has no calibration: the IMU's pose on the body is unknown";
-  } else if (!(context.rig.imus[0].rate_hz > 0)) {
-    cannot_start_ = "the IMU's data sheet gives no rate_hz";
-  }
+    : options_(options), gravity_m_s2_(context.rig.gravity_m_s2), cannot_start_(no_usable_imu(context.rig)) {
   if (!cannot_start_.empty()) return;
   sheet_ = context.rig.imus[0];
-  period_ = core::duration_from_s(1 / sheet_.rate_hz);
   static_start_.emplace(options, sheet_.T_body_imu.linear(), gravity_m_s2_, sheet_.rate_hz);
 }
 
 void DeadReckoning::add(const core::ImuSample& sample) {
   if (!static_start_) return;
-  const Time middle = sample.t - sheet_.delay;
   if (!start_) {
     core::ImuSample centred = sample;
-    centred.t = middle;
+    centred.t = sample.t - sheet_.delay;
     start_ = static_start_->add(centred);
-    if (start_) begin_at(*start_, middle + period_ / 2);
+    if (start_) begin_at(*start_, centred.t + core::duration_from_s(0.5 / sheet_.rate_hz));
     return;
   }
-  const Vector3d omega = sample.gyro_rad_s - start_->gyro_bias_rad_s, f = sample.accel_m_s2 - start_->accel_bias_m_s2;
-  const Time begin = middle - period_ / 2, end = middle + period_ / 2;
-  const Interval& last = intervals_.back();
-  // Half a period absorbs jittering stamps; more is a hole, crossed with the mean of its two sides.
-  if (begin - last.end > period_ / 2) {
-    const bool long_hole = static_cast<double>((begin - last.end).count()) >
-                           (options_.max_gap_periods - 1) * static_cast<double>(period_.count());
-    append((last.omega_rad_s + omega) / 2, (last.f_m_s2 + f) / 2, begin, long_hole);
+  for (const ImuSpan& span : chain_->add(sample)) {
+    const InertialState start = state_at(intervals_.back(), intervals_.back().end);
+    intervals_.push_back({start, span.end, span.gyro_rad_s - start_->gyro_bias_rad_s,
+                          span.accel_m_s2 - start_->accel_bias_m_s2, span.hole});
   }
-  if (end > intervals_.back().end) append(omega, f, end, false);
 }
 
 void DeadReckoning::begin_at(const StaticStart::Result& start, Time end) {
@@ -60,11 +43,9 @@ void DeadReckoning::begin_at(const StaticStart::Result& start, Time end) {
   rest.omega_rad_s.setZero();
   rest.f_m_s2 = start.R_map_imu.transpose() * Vector3d(0, 0, gravity_m_s2_);
   intervals_.push_back(rest);
-}
-
-void DeadReckoning::append(const Vector3d& omega_rad_s, const Vector3d& f_m_s2, Time end, bool hole) {
-  const InertialState start = state_at(intervals_.back(), intervals_.back().end);
-  intervals_.push_back({start, end, omega_rad_s, f_m_s2, hole});
+  chain_.emplace(
+      sheet_, options_.max_gap_periods,
+      ImuSpan{rest.start.t, end, start.gyro_bias_rad_s, Vector3d(rest.f_m_s2 + start.accel_bias_m_s2), false});
 }
 
 InertialState DeadReckoning::state_at(const Interval& interval, Time t) const {
@@ -94,9 +75,7 @@ core::Segment DeadReckoning::motion_over(const core::LidarSweep& sweep) const {
 }
 
 bool DeadReckoning::in_hole(const core::LidarSweep& sweep) const {
-  const auto max_ns = options_.max_gap_periods * static_cast<double>(period_.count()) +
-                      static_cast<double>(std::max<std::int64_t>(0, sheet_.delay.count()));
-  if (static_cast<double>((sweep.end - intervals_.back().end).count()) > max_ns) return true;
+  if (sweep.end - intervals_.back().end > chain_->patience()) return true;
   return std::any_of(intervals_.begin(), intervals_.end(), [&](const Interval& interval) {
     return interval.hole && interval.start.t < sweep.end && interval.end > sweep.begin;
   });
@@ -124,19 +103,7 @@ void DeadReckoning::finish(core::Estimate& estimate) {
   estimate.gravity_aligned = true;
   if (start_) return;
   estimate.status = core::RunStatus::not_initialised;
-  if (!cannot_start_.empty()) {
-    estimate.message = cannot_start_;
-  } else if (!std::isfinite(static_start_->least_accel_spread_m_s2())) {
-    estimate.message = fmt::format("no {} s of IMU samples without a hole in the first {} s", options_.rest_window_s,
-                                   options_.rest_within_s);
-  } else {
-    estimate.message = fmt::format(
-        "no rest in the first {} s: the calmest {} s of specific force spread {:.3g} m/s^2 (at most {} is rest), or "
-        "the "
-        "rig turned faster than {} rad/s",
-        options_.rest_within_s, options_.rest_window_s, static_start_->least_accel_spread_m_s2(),
-        options_.rest_accel_spread_m_s2, options_.rest_gyro_rad_s);
-  }
+  estimate.message = cannot_start_.empty() ? static_start_->why_not() : cannot_start_;
 }
 
 extern const EstimatorEntry dead_reckoning;

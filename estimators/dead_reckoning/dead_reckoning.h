@@ -6,6 +6,7 @@
 #include <string>
 
 #include "estimators/dead_reckoning/propagate.h"
+#include "estimators/dead_reckoning/sample_chain.h"
 #include "estimators/dead_reckoning/static_start.h"
 #include "estimators/estimator.h"
 
@@ -29,7 +30,6 @@ class DeadReckoning final : public Estimator {
     bool hole = false;  ///< no sample stands for it
   };
   void begin_at(const StaticStart::Result& start, core::Time end);
-  void append(const Eigen::Vector3d& omega_rad_s, const Eigen::Vector3d& f_m_s2, core::Time end, bool hole);
   InertialState state_at(const Interval& interval, core::Time t) const;
   bool covers(const core::LidarSweep& sweep) const {
     return !intervals_.empty() && intervals_.front().start.t <= sweep.begin;
@@ -40,10 +40,10 @@ class DeadReckoning final : public Estimator {
   DeadReckoningOptions options_;
   core::ImuSheet sheet_;
   double gravity_m_s2_;
-  core::Duration period_{0};
   std::string cannot_start_;  ///< why; empty when it can
   std::optional<StaticStart> static_start_;
   std::optional<StaticStart::Result> start_;
+  std::optional<SampleChain> chain_;
   std::deque<Interval> intervals_;  ///< contiguous, back to the last sweep's end
 };
 

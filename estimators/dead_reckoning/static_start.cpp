@@ -1,5 +1,7 @@
 #include "estimators/dead_reckoning/static_start.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,8 +13,11 @@ namespace tarmac::estimators {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-StaticStart::StaticStart(const DeadReckoningOptions& options, const Matrix3d& R_body_imu, double gravity_m_s2,
-                         double rate_hz)
+namespace {
+constexpr double kMaxHolePeriods = 4;  ///< a longer hole in the samples hides what happened in it
+}
+
+StaticStart::StaticStart(const RestOptions& options, const Matrix3d& R_body_imu, double gravity_m_s2, double rate_hz)
     : options_(options),
       R_body_imu_(R_body_imu),
       gravity_m_s2_(gravity_m_s2),
@@ -26,9 +31,7 @@ std::optional<StaticStart::Result> StaticStart::add(const core::ImuSample& sampl
   gave_up_ = gave_up_ || elapsed_s > std::max(options_.rest_within_s, options_.rest_window_s) + 0.5 * period_s_;
   if (gave_up_) return std::nullopt;
 
-  // A hole in the samples hides what happened in it.
-  if (!window_.empty() && core::to_s(sample.t - window_.back().t) > options_.max_gap_periods * period_s_)
-    window_.clear();
+  if (!window_.empty() && core::to_s(sample.t - window_.back().t) > kMaxHolePeriods * period_s_) window_.clear();
   window_.push_back(sample);
   const auto span_s = [&] { return core::to_s(window_.back().t - window_.front().t) + period_s_; };
   if (span_s() < options_.rest_window_s - 0.5 * period_s_) return std::nullopt;
@@ -60,6 +63,18 @@ std::optional<StaticStart::Result> StaticStart::evaluate() {
   return Result{.R_map_imu = R_map_body * R_body_imu_,
                 .gyro_bias_rad_s = gyro,
                 .accel_bias_m_s2 = accel * (1 - gravity_m_s2_ / accel.norm())};
+}
+
+std::string StaticStart::why_not() const {
+  if (!std::isfinite(least_spread_m_s2_)) {
+    return fmt::format("no {} s of IMU samples without a hole in the first {} s", options_.rest_window_s,
+                       options_.rest_within_s);
+  }
+  return fmt::format(
+      "no rest in the first {} s: the calmest {} s of specific force spread {:.3g} m/s^2 (at most {} is rest), or the "
+      "rig turned faster than {} rad/s",
+      options_.rest_within_s, options_.rest_window_s, least_spread_m_s2_, options_.rest_accel_spread_m_s2,
+      options_.rest_gyro_rad_s);
 }
 
 }  // namespace tarmac::estimators

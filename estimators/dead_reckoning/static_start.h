@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <optional>
+#include <string>
 
 #include "core/measurements.h"
 #include "estimators/dead_reckoning/options.h"
@@ -20,8 +21,7 @@ class StaticStart {
     Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();
   };
 
-  StaticStart(const DeadReckoningOptions& options, const Eigen::Matrix3d& R_body_imu, double gravity_m_s2,
-              double rate_hz);
+  StaticStart(const RestOptions& options, const Eigen::Matrix3d& R_body_imu, double gravity_m_s2, double rate_hz);
 
   /// Takes samples in time order. @returns the start once the last window_s of samples were at rest
   std::optional<Result> add(const core::ImuSample& sample);
@@ -29,11 +29,13 @@ class StaticStart {
   bool gave_up() const { return gave_up_; }
   /// The calmest full window so far; infinite where there was none.
   double least_accel_spread_m_s2() const { return least_spread_m_s2_; }
+  /// Why there was none, for the run's message.
+  std::string why_not() const;
 
  private:
   std::optional<Result> evaluate();
 
-  DeadReckoningOptions options_;
+  RestOptions options_;
   Eigen::Matrix3d R_body_imu_;
   double gravity_m_s2_;
   double period_s_;

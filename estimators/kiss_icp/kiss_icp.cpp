@@ -5,11 +5,9 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "estimators/blocks/stopwatch.h"
 #include "estimators/kiss_icp/record.h"
 
 namespace tarmac::estimators {
-namespace {
 
 KissIcpOptions checked(const KissIcpOptions& options) {
   if (options.min_range_m >= options.max_range_m) {
@@ -24,55 +22,28 @@ KissIcpOptions checked(const KissIcpOptions& options) {
   return options;
 }
 
-KissIcpOptions without_deskew(const RigidIcpOptions& options) {
-  KissIcpOptions rigid;
-  static_cast<RigidIcpOptions&>(rigid) = options;
-  rigid.deskew = false;
-  return rigid;
+KissIcpOptions kiss_options(const RigidIcpOptions& options, bool deskew) {
+  KissIcpOptions all;
+  static_cast<RigidIcpOptions&>(all) = options;
+  all.deskew = deskew;
+  return all;
 }
-
-}  // namespace
 
 KissIcp::KissIcp(const KissIcpOptions& options, const EstimatorContext& context)
     : odometry_(checked(options)),
       level_(context.diagnostics),
       T_lidar_body_(context.rig.lidars.at(0).T_body_lidar.inverse()),
-      arena_(std::max(1, context.threads)) {}
-
-core::SweepStatus KissIcp::status(const KissOdometry::Step& step) const {
-  if (odometry_.icp_sample().empty()) return core::SweepStatus::empty;
-  return step.icp.solved ? core::SweepStatus::ok : core::SweepStatus::lost;
+      arena_(std::max(1, context.threads)) {
+  if (level_ == core::DiagnosticsLevel::full) odometry_.look_for_surfaces();
 }
 
 SweepOutcome KissIcp::add(const core::LidarSweep& sweep) {
   KissOdometry::Step step = arena_.execute([&] { return odometry_.add(sweep); });
-  SweepOutcome outcome;
-  outcome.stages_ms = std::move(step.stages_ms);
-  Stopwatch stopwatch(outcome.stages_ms);
-
-  // Stamps beyond the sweep's end are a fault of the sensor's; the reference stays inside.
-  const core::Duration span = sweep.end - sweep.begin;
-  const core::Duration last =
-      sweep.empty() ? span : std::clamp(core::Duration(step.motion.last_ns()), core::Duration(0), span);
-  const core::SE3 T_last_reference =
-      last.count() == step.motion.last_ns() ? core::SE3::Identity() : step.motion.T_end_point(last.count());
-  outcome.result = {.index = sweep.index,
-                    .begin = sweep.begin,
-                    .end = sweep.end,
-                    .reference = sweep.begin + last,
-                    .status = status(step),
-                    .T_map_body = step.icp.T_map_lidar * T_last_reference * T_lidar_body_};
-  outcome.motion = placed_by(sweep, step.motion, step.icp.T_map_lidar, T_lidar_body_);
-  if (level_ != core::DiagnosticsLevel::none) {
-    outcome.diagnostics = record_of(sweep, odometry_, step, T_lidar_body_, level_);
-    stopwatch.lap("record");
-  }
-  outcome.diagnostics.index = sweep.index;
-  return outcome;
+  return outcome_of(sweep, odometry_, std::move(step), T_lidar_body_, level_);
 }
 
 RigidIcp::RigidIcp(const RigidIcpOptions& options, const EstimatorContext& context)
-    : KissIcp(without_deskew(options), context) {}
+    : KissIcp(kiss_options(options, false), context) {}
 
 extern const EstimatorEntry kiss_icp;
 const EstimatorEntry kiss_icp{

@@ -8,6 +8,11 @@
 
 namespace tarmac::estimators {
 
+/// Throws InputError when options contradict each other.
+KissIcpOptions checked(const KissIcpOptions& options);
+/// Options with deskewing as told.
+KissIcpOptions kiss_options(const RigidIcpOptions& options, bool deskew);
+
 /// T_map_body = T_map_lidar T_lidar_body by the nominal extrinsic; the map is the LiDAR's frame at the first sweep's
 /// last point. Reference instant: the sweep's last point.
 class KissIcp : public Estimator {
@@ -18,8 +23,6 @@ class KissIcp : public Estimator {
   SweepOutcome add(const core::LidarSweep& sweep) override;
 
  private:
-  core::SweepStatus status(const KissOdometry::Step& step) const;
-
   KissOdometry odometry_;
   core::DiagnosticsLevel level_;
   core::SE3 T_lidar_body_;

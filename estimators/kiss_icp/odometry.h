@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/measurements.h"
+#include "estimators/blocks/local_plane.h"
 #include "estimators/blocks/voxel_map.h"
 #include "estimators/blocks/voxel_sampler.h"
 #include "estimators/kiss_icp/adaptive_threshold.h"
@@ -22,14 +23,26 @@ class KissOdometry {
  public:
   explicit KissOdometry(const KissIcpOptions& options);
 
+  /// One point against the plane that the map holds where the registration put it.
+  struct SurfacePoint {
+    std::uint32_t point = 0;  ///< index into the sweep
+    LocalPlane plane;         ///< in the map's axes
+  };
   struct Step {
     IcpResult icp;
+    std::vector<SurfacePoint> surface;  ///< if asked for
     SweepMotion motion;  ///< by which the points were placed
     double sigma_m = 0;
     std::vector<std::pair<std::string, double>> stages_ms;
   };
-  /// Parallel inside the calling task arena.
+  /// Deskewing and prediction by the motion of the sweep before. Parallel inside the calling task arena.
   Step add(const core::LidarSweep& sweep);
+  /// The same with both from elsewhere. `T_predicted`: of the LiDAR in the map, at the sweep's last point.
+  Step add(const core::LidarSweep& sweep, const SweepMotion& motion, const core::SE3& T_predicted);
+  /// Look for planes at every point that could go into the map, in the map as it was kSurfaceAge sweeps ago: what is
+  /// wrong with this sweep was likely wrong with the last few in the same way, and their points would hide it.
+  void look_for_surfaces() { surfaces_ = true; }
+  static constexpr std::int32_t kSurfaceAge = 10;
 
   const core::SE3& T_map_lidar() const { return T_map_lidar_; }
   const AdaptiveThreshold& threshold() const { return threshold_; }
@@ -43,9 +56,12 @@ class KissOdometry {
  private:
   void gate_range();
   void thin_out();
+  std::vector<SurfacePoint> surfaces_at(const core::SE3& T_map_lidar) const;
   void update_map();
 
   KissIcpOptions options_;
+  bool surfaces_ = false;
+  std::int32_t sweeps_ = 0;  ///< until now
   VoxelSampler sampler_;
   Registration registration_;
   VoxelMap map_;

@@ -1,5 +1,9 @@
 #include "estimators/kiss_icp/record.h"
 
+#include <algorithm>
+
+#include "estimators/blocks/stopwatch.h"
+
 namespace tarmac::estimators {
 namespace {
 
@@ -14,30 +18,71 @@ Matrix36 jacobian(const Matrix3d& R, const Vector3d& p_body) {
   return J;
 }
 
-/// Three rows a matched point.
+/// Three rows a matched point, one a point with a surface.
 class RowWriter {
  public:
   RowWriter(const core::LidarSweep& sweep, const KissOdometry::Step& step, const SE3& T_lidar_body)
       : sweep_(sweep), step_(step), T_lidar_body_(T_lidar_body), T_body_lidar_(T_lidar_body.inverse()) {}
 
   void write(std::size_t i, const Match& match, std::vector<core::ResidualRow>& rows) const {
-    const SE3 T_map_body = step_.icp.T_map_lidar_linearised * step_.motion.T_end_point(sweep_.t_ns[i]) * T_lidar_body_;
-    const Matrix36 J = jacobian(T_map_body.linear(), T_body_lidar_ * sweep_.point(i));
-    for (int axis = 0; axis < 3; ++axis) {
-      core::ResidualRow& row = rows.emplace_back();
-      row.t_ns = sweep_.t_ns[i];
-      row.value = static_cast<float>(match.residual_m[axis]);
-      row.weight = static_cast<float>(match.weight);
-      for (int k = 0; k < 6; ++k) row.jacobian[k] = static_cast<float>(J(axis, k));
-      row.sensor = sweep_.sensor;
-    }
+    const Matrix36 J = jacobian(T_map_body(i).linear(), T_body_lidar_ * sweep_.point(i));
+    for (int axis = 0; axis < 3; ++axis) rows.push_back(row(i, match.residual_m[axis], match.weight, J.row(axis)));
+  }
+
+  void write(const KissOdometry::SurfacePoint& at, std::vector<core::ResidualRow>& rows) const {
+    const SE3 T = T_map_body(at.point);
+    const Vector3d p_body = T_body_lidar_ * sweep_.point(at.point), p_map = T * p_body;
+    const Vector3d to_sensor = T * T_body_lidar_.translation() - p_map;
+    const Vector3d n_map = at.plane.normal.dot(to_sensor) < 0 ? Vector3d(-at.plane.normal) : at.plane.normal;
+    const Vector3d n_body = T.linear().transpose() * n_map;
+    core::Row6 J;
+    J << n_body.transpose(), p_body.cross(n_body).transpose();
+    rows.push_back(row(at.point, n_map.dot(p_map - at.plane.centre), 1, J));
   }
 
  private:
+  SE3 T_map_body(std::size_t i) const {
+    return step_.icp.T_map_lidar_linearised * step_.motion.T_end_point(sweep_.t_ns[i]) * T_lidar_body_;
+  }
+  core::ResidualRow row(std::size_t i, double value, double weight, const core::Row6& J) const {
+    core::ResidualRow r;
+    r.t_ns = sweep_.t_ns[i];
+    r.value = static_cast<float>(value);
+    r.weight = static_cast<float>(weight);
+    for (int k = 0; k < 6; ++k) r.jacobian[k] = static_cast<float>(J[k]);
+    r.sensor = sweep_.sensor;
+    r.point = static_cast<std::uint32_t>(i);
+    return r;
+  }
+
   const core::LidarSweep& sweep_;
   const KissOdometry::Step& step_;
   SE3 T_lidar_body_, T_body_lidar_;
 };
+
+/// The measured path over the sweep's span, moved from the left so that at the last point it is at `T_map_body`.
+core::Segment carried(const core::LidarSweep& sweep, const SweepMotion& motion, const SE3& T_map_body) {
+  const core::Segment& path = *motion.path();
+  const SE3 T_map_path = T_map_body * motion.path_pose(motion.last_ns()).inverse();
+  std::vector<core::Time> times;
+  std::vector<SE3> poses;
+  const auto node = [&](core::Time t, const SE3& T_path_body) {
+    times.push_back(t);
+    poses.push_back(core::se3::normalized(T_map_path * T_path_body));
+  };
+  const core::Time begin = std::max(sweep.begin, path.t0), end = std::min(sweep.end, path.t1);
+  node(begin, path.pose(begin));
+  for (std::size_t k = 0; k < path.times.size(); ++k) {
+    if (path.times[k] > begin && path.times[k] < end) node(path.times[k], path.poses[k]);
+  }
+  if (end > begin) node(end, path.pose(end));
+  return core::Segment::sampled(path.model, std::move(times), std::move(poses));
+}
+
+core::SweepStatus status(const KissOdometry& odometry, const KissOdometry::Step& step) {
+  if (odometry.icp_sample().empty()) return core::SweepStatus::empty;
+  return step.icp.solved ? core::SweepStatus::ok : core::SweepStatus::lost;
+}
 
 }  // namespace
 
@@ -45,6 +90,7 @@ std::vector<core::Segment> placed_by(const core::LidarSweep& sweep, const SweepM
                                      const SE3& T_lidar_body) {
   using core::Segment;
   if (!motion.moves()) return {Segment::hold(sweep.begin, sweep.end, T_map_lidar * T_lidar_body)};
+  if (motion.path()) return {carried(sweep, motion, T_map_lidar * T_lidar_body)};
   std::int64_t t0_ns = 0, t1_ns = (sweep.end - sweep.begin).count();
   if (motion.phase(t0_ns) < -1 || motion.phase(t1_ns) > 2) {
     t0_ns = motion.first_ns();
@@ -78,7 +124,37 @@ core::SweepDiagnostics record_of(const core::LidarSweep& sweep, const KissOdomet
     record.residuals += 3;
     if (level == core::DiagnosticsLevel::full) rows.write(i, matches[k], record.rows);
   }
+  if (level == core::DiagnosticsLevel::full) {
+    for (const KissOdometry::SurfacePoint& at : step.surface) rows.write(at, record.surface);
+  }
   return record;
+}
+
+SweepOutcome outcome_of(const core::LidarSweep& sweep, const KissOdometry& odometry, KissOdometry::Step step,
+                        const SE3& T_lidar_body, core::DiagnosticsLevel level) {
+  SweepOutcome outcome;
+  outcome.stages_ms = std::move(step.stages_ms);
+  Stopwatch stopwatch(outcome.stages_ms);
+
+  // Stamps beyond the sweep's end are a fault of the sensor's; the reference stays inside.
+  const core::Duration span = sweep.end - sweep.begin;
+  const core::Duration last =
+      sweep.empty() ? span : std::clamp(core::Duration(step.motion.last_ns()), core::Duration(0), span);
+  const SE3 T_last_reference =
+      last.count() == step.motion.last_ns() ? SE3::Identity() : step.motion.T_end_point(last.count());
+  outcome.result = {.index = sweep.index,
+                    .begin = sweep.begin,
+                    .end = sweep.end,
+                    .reference = sweep.begin + last,
+                    .status = status(odometry, step),
+                    .T_map_body = step.icp.T_map_lidar * T_last_reference * T_lidar_body};
+  outcome.motion = placed_by(sweep, step.motion, step.icp.T_map_lidar, T_lidar_body);
+  if (level != core::DiagnosticsLevel::none) {
+    outcome.diagnostics = record_of(sweep, odometry, step, T_lidar_body, level);
+    stopwatch.lap("record");
+  }
+  outcome.diagnostics.index = sweep.index;
+  return outcome;
 }
 
 }  // namespace tarmac::estimators

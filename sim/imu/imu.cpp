@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/error.h"
-#include "core/random.h"
+#include "sim/imu/low_pass.h"
 
 namespace tarmac::sim {
 
@@ -59,27 +60,45 @@ Time stamp(Time begin, std::int64_t k, double rate_hz) {
   return begin + Duration(std::llround(static_cast<double>(k) * 1e9 / rate_hz));
 }
 
-/// One axis of one triad; draw k belongs to sample k.
-class AxisErrors {
+/// Runs both triads through the low-pass filter, from a settled start.
+class Filtered {
  public:
-  AxisErrors(const TriadModel& model, double interval_s, std::uint64_t seed, const std::string& name)
-      : noise_(seed, name + "/noise"),
-        walk_(seed, name + "/bias_walk"),
-        noise_sigma_(model.noise_density / std::sqrt(interval_s)),
-        walk_sigma_(model.random_walk * std::sqrt(interval_s)),
-        range_(model.range),
-        bias_(model.turn_on_sigma * RandomStream(seed, name + "/turn_on_bias").normal(0)) {}
-
-  double apply(std::uint64_t k, double value) {
-    if (walk_sigma_ > 0) bias_ += walk_sigma_ * walk_.normal(k);
-    if (noise_sigma_ > 0) value += noise_sigma_ * noise_.normal(k);
-    value += bias_;
-    return range_ > 0 ? std::clamp(value, -range_, range_) : value;
+  Filtered(const SmoothTrajectory& motion, const ImuOptions& options, double gravity_m_s2, Time begin)
+      : motion_(motion), options_(options), gravity_m_s2_(gravity_m_s2), filter_(options.low_pass_hz), t_(begin) {
+    const Reading r = at(begin);
+    state_.setZero();
+    state_.row(0) << r.gyro_rad_s.transpose(), r.accel_m_s2.transpose();
+  }
+  /// The filter's output at t, which is later than all before.
+  Reading advance_to(Time t) {
+    const auto longest_ns = std::min<std::int64_t>(max_part_ns, duration_from_s(filter_.time_constant_s()).count());
+    const std::int64_t span_ns = (t - t_).count(), parts = (span_ns + longest_ns - 1) / longest_ns;
+    const double part_ns = static_cast<double>(span_ns) / static_cast<double>(parts);
+    for (std::int64_t p = 0; p < parts; ++p) advance(static_cast<double>(p) * part_ns, part_ns);
+    t_ = t;
+    return {state_.row(0).head<3>().transpose(), state_.row(0).tail<3>().transpose()};
   }
 
  private:
-  RandomStream noise_, walk_;
-  double noise_sigma_, walk_sigma_, range_, bias_;
+  Reading at(Time t) const { return reading_at(motion_, options_.T_body_imu, gravity_m_s2_, t); }
+  /// z(h) = Phi(h) z + integral of Phi(h - u) (0, w^2) x(u) du.
+  void advance(double since_ns, double part_ns) {
+    const double h_s = 1e-9 * part_ns;
+    state_ = (filter_.transition(h_s) * state_).eval();
+    for (std::size_t j = 0; j < gauss_node.size(); ++j) {
+      const Reading r = at(t_ + Duration(std::llround(since_ns + gauss_node[j] * part_ns)));
+      Eigen::Matrix<double, 1, 6> x;
+      x << r.gyro_rad_s.transpose(), r.accel_m_s2.transpose();
+      state_ += gauss_weight[j] * h_s * filter_.impulse((1 - gauss_node[j]) * h_s) * x;
+    }
+  }
+
+  const SmoothTrajectory& motion_;
+  const ImuOptions& options_;
+  double gravity_m_s2_;
+  LowPass filter_;
+  Time t_;
+  Eigen::Matrix<double, 2, 6> state_;  // output and its rate, of each axis
 };
 
 void check(const ImuOptions& options) {
@@ -97,43 +116,42 @@ void ImuOptions::visit(OptionVisitor& v) {
   v.choice("model", model, names, "which IMU: its noise, biases and ranges");
   v("rate_hz", rate_hz, "samples a second", {.above = 0, .at_most = 5000});
   v("T_body_imu", T_body_imu, "where it is mounted");
-  v.choice("sampling", sampling, {"interval-mean", "point"},
-           "a sample is the mean over its interval, as real devices do, or the value at its stamp");
-  v("noise", noise, "white noise, biases and saturation (off: perfect samples)");
+  v.choice("sampling", sampling, {"interval-mean", "low-pass", "point"},
+           "a sample is the mean over its interval or the output of a low-pass filter, as real devices give, or the "
+           "value at its stamp");
+  v("low_pass_hz", low_pass_hz, "with low-pass: cutoff (-3 dB) of the second-order Butterworth filter",
+    {.above = 0, .at_most = 2000});
+  v("noise", noise, "all errors that are on below (off: perfect samples)");
+  v.group("errors", errors, "which errors the device has");
 }
 
 std::vector<ImuSample> ideal_imu(const SmoothTrajectory& motion, const ImuOptions& options, double gravity_m_s2,
                                  Time begin, Time end) {
   const bool point = options.sampling == "point";
+  std::optional<Filtered> filtered;
+  if (options.sampling == "low-pass") filtered.emplace(motion, options, gravity_m_s2, begin);
   std::vector<ImuSample> samples;
   for (std::int64_t k = point ? 0 : 1; stamp(begin, k, options.rate_hz) <= end; ++k) {
     const Time t = stamp(begin, k, options.rate_hz), before = stamp(begin, k - 1, options.rate_hz);
-    const Reading r = point ? reading_at(motion, options.T_body_imu, gravity_m_s2, t)
-                            : mean_over(motion, options.T_body_imu, gravity_m_s2, before, t);
+    const Reading r = point      ? reading_at(motion, options.T_body_imu, gravity_m_s2, t)
+                      : filtered ? filtered->advance_to(t)
+                                 : mean_over(motion, options.T_body_imu, gravity_m_s2, before, t);
     samples.push_back({t, r.gyro_rad_s, r.accel_m_s2});
   }
   return samples;
 }
 
-void add_imu_errors(std::vector<ImuSample>& samples, const ImuModel& model, double rate_hz, std::uint64_t seed,
-                    const std::string& name) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const char letter = "xyz"[axis];
-    AxisErrors gyro(model.gyro, 1 / rate_hz, seed, fmt::format("{}/gyro_{}", name, letter));
-    AxisErrors accel(model.accel, 1 / rate_hz, seed, fmt::format("{}/accel_{}", name, letter));
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      samples[k].gyro_rad_s[axis] = gyro.apply(k, samples[k].gyro_rad_s[axis]);
-      samples[k].accel_m_s2[axis] = accel.apply(k, samples[k].accel_m_s2[axis]);
-    }
-  }
-}
-
-std::vector<ImuSample> synthesize_imu(const SmoothTrajectory& motion, const ImuOptions& options, double gravity_m_s2,
-                                      Time begin, Time end, std::uint64_t seed, const std::string& name) {
+SynthesizedImu synthesize_imu(const SmoothTrajectory& motion, const ImuOptions& options, double gravity_m_s2,
+                              Time begin, Time end, std::uint64_t seed, const std::string& name) {
   check(options);
-  std::vector<ImuSample> samples = ideal_imu(motion, options, gravity_m_s2, begin, end);
-  if (options.noise) add_imu_errors(samples, imu_model(options.model), options.rate_hz, seed, name);
-  return samples;
+  SynthesizedImu out;
+  out.samples = ideal_imu(motion, options, gravity_m_s2, begin, end);
+  const ImuTiming timing{options.rate_hz, options.sampling == "low-pass" ? options.low_pass_hz : 0};
+  const auto every_second = static_cast<std::size_t>(std::max(1.0, std::round(options.rate_hz)));
+  out.errors =
+      add_imu_errors(out.samples, imu_model(options.model), options.noise ? options.errors : ImuErrorOptions::none(),
+                     timing, seed, name, every_second);
+  return out;
 }
 
 ImuSheet imu_sheet(const ImuOptions& options) {
@@ -143,7 +161,9 @@ ImuSheet imu_sheet(const ImuOptions& options) {
   sheet.model = model.name;
   sheet.T_body_imu = options.T_body_imu;
   sheet.rate_hz = options.rate_hz;
-  sheet.delay = options.sampling == "point" ? Duration(0) : duration_from_s(0.5 / options.rate_hz);
+  sheet.delay = options.sampling == "point"      ? Duration(0)
+                : options.sampling == "low-pass" ? duration_from_s(LowPass(options.low_pass_hz).group_delay_s())
+                                                 : duration_from_s(0.5 / options.rate_hz);
   sheet.gyro_noise_density_rad_s_rthz = model.gyro.noise_density;
   sheet.gyro_random_walk_rad_s2_rthz = model.gyro.random_walk;
   sheet.gyro_range_rad_s = model.gyro.range;

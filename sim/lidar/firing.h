@@ -3,10 +3,14 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/time.h"
+#include "sim/lidar/column_times.h"
 #include "sim/lidar/profile.h"
+#include "sim/lidar/spin.h"
 
 namespace tarmac::sim::lidar {
 
@@ -14,6 +18,10 @@ namespace tarmac::sim::lidar {
 struct Cycle {
   core::Time t;                     ///< of its beginning
   double cos_azimuth, sin_azimuth;  ///< of the head at t, clockwise from sensor +x
+  double cos_encoder, sin_encoder;  ///< of the head as its encoder has it: the same unless the encoder errs
+
+  /// The cycle as a driver sees it, from which it computes points.
+  Cycle reported() const { return {t, cos_encoder, sin_encoder, cos_encoder, sin_encoder}; }
 };
 
 struct SweepSpan {
@@ -26,18 +34,27 @@ struct SweepSpan {
 /// The firing table of one sensor in one mode. Cycle n of the recording:
 ///   encoder: t = n / (columns rate), azimuth = start + 360 (n mod columns) / columns
 ///   clock:   t = n cycle_us,         azimuth = start + 360 rate t; sweep k holds the cycles with k <= rate t < k + 1
-/// Channel c fires at t + firing_us[c], in the direction azimuth + azimuth_offset_cw_deg[c] + (clock: 360 rate
-/// firing_us[c]). Times are rounded to a nanosecond.
+/// Channel c fires at t + firing_us[c], in the direction azimuth + azimuth_offset_cw_deg[c] + 360 rate firing_us[c].
+/// Times are rounded to a nanosecond.
+///
+/// A head that turns unevenly (`jitter`) passes the fixed angles of an encoder-driven sensor at other times,
+/// t + lead(t), and has other angles at the fixed times of a clock-driven one, 360 rate (t + lead(t)); inside a cycle
+/// it turns at its nominal rate. An encoder that errs tells another angle than the head has: an encoder-driven sensor
+/// fires where the error leaves it, a clock-driven one reports the angle with the error. `replay`: sweep k's columns
+/// fire at recorded times, at their nominal angles.
 class FiringTable {
  public:
   FiringTable(const Profile& profile, const Mode& mode);
+  /// Throws InputError when the sensor cannot do what is asked for: column times with clock timing, times that
+  /// check_column_times refuses, jitter that would let cycles overlap.
+  FiringTable(const Profile& profile, const Mode& mode, const SpinJitter& jitter,
+              std::vector<ReplayedSweep> replay = {});
 
   const Mode& mode() const { return mode_; }
   std::size_t channels() const { return offset_ns_.size(); }
   SweepSpan sweep(std::int64_t index) const;
-  core::Time cycle_time(std::int64_t cycle) const;
   Cycle cycle(const SweepSpan& sweep, std::int64_t k) const;  ///< the k-th of the sweep
-  /// How many sweeps end no later than `end`.
+  /// How many sweeps end no later than `end`; no more than there are recorded times for.
   std::int64_t sweeps_until(core::Time end) const;
 
   std::int32_t offset_ns(std::size_t channel) const { return offset_ns_[channel]; }
@@ -45,16 +62,20 @@ class FiringTable {
   /// Unit vector of the beam in the sensor frame.
   Eigen::Vector3d direction(const Cycle& cycle, std::size_t channel) const {
     const Beam& b = beams_[channel];
-    // Clockwise azimuth a + b seen as x forward, y left: (cos(a + b), -sin(a + b)).
-    return {b.forward * cycle.cos_azimuth - b.right * cycle.sin_azimuth,
-            -(b.forward * cycle.sin_azimuth + b.right * cycle.cos_azimuth), b.up};
+    return turned(cycle, b.forward, b.right, b.up);
   }
   /// Where the beams of a cycle start, sensor frame [m].
   Eigen::Vector3d origin(const Cycle& cycle) const {
     return {radius_m_ * cycle.cos_azimuth, -radius_m_ * cycle.sin_azimuth, height_m_};
   }
-  /// Length from the range datum to the beam's origin: a sensor's raw range counts it [m].
-  double range_offset_m() const { return radius_m_; }
+  /// Beams of a cycle start at different points: at origin() + origin_offset().
+  bool channel_origins() const { return channel_origins_; }
+  Eigen::Vector3d origin_offset(const Cycle& cycle, std::size_t channel) const {
+    const Beam& b = beams_[channel];
+    return turned(cycle, b.origin_forward_m, b.origin_right_m, b.origin_up_m);
+  }
+  /// What a sensor's raw range counts beyond the way from the beam's origin [m].
+  double range_offset_m() const { return range_offset_m_; }
 
   /// Tiles of 16 firings that look the same way, for `cycles` consecutive cycles in firing order (index = cycle *
   /// channels + channel); tiles that the cycles do not fill up hold raycast::SweepTracer::no_ray.
@@ -63,8 +84,17 @@ class FiringTable {
  private:
   struct Beam {
     double forward, right, up;  // at azimuth 0
+    double origin_forward_m, origin_right_m, origin_up_m;
   };
+  // Clockwise azimuth a of the head seen as x forward, y left.
+  static Eigen::Vector3d turned(const Cycle& cycle, double forward, double right, double up) {
+    return {forward * cycle.cos_azimuth - right * cycle.sin_azimuth,
+            -(forward * cycle.sin_azimuth + right * cycle.cos_azimuth), up};
+  }
   std::int64_t first_cycle_of(std::int64_t sweep) const;
+  std::int64_t column_of(std::int64_t k) const;
+  core::Time cycle_time(const SweepSpan& sweep, std::int64_t k) const;
+  double turns_at_cycle(std::int64_t cycle) const;
   std::vector<std::vector<std::size_t>> channel_groups() const;
 
   Mode mode_;
@@ -72,11 +102,16 @@ class FiringTable {
   double cycle_ns_;  // real-valued for encoder timing
   double cycles_per_turn_;
   double start_rad_, step_rad_;
-  double radius_m_, height_m_;
-  bool staggered_;
+  double radius_m_, height_m_, range_offset_m_;
+  bool staggered_, channel_origins_;
+  std::int64_t window_first_,
+      window_cycles_;            // encoder timing: columns that are fired, through the last into the first
+  std::int64_t window_wrapped_;  // how many of them lie at the sweep's begin when the window wraps
   std::vector<Beam> beams_;
   std::vector<std::int32_t> offset_ns_;
   std::vector<double> elevation_rad_, azimuth_rad_;  // azimuth offset, spin inside the cycle included
+  std::optional<SpinJitter> jitter_;
+  std::shared_ptr<const std::vector<ReplayedSweep>> replay_;  // shared by copies: it may be long
 };
 
 }  // namespace tarmac::sim::lidar

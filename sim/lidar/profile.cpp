@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <string_view>
 
 #include "core/config.h"
 #include "core/error.h"
@@ -15,35 +17,95 @@ namespace {
 using core::ConfigNode;
 using core::InputError;
 
-Mode parse_mode(const std::string& text) {
-  Mode mode;
-  const std::size_t cross = text.find('x');
-  const char* const end = text.data() + text.size();
-  const bool good = cross != std::string::npos &&
-                    std::from_chars(text.data(), text.data() + cross, mode.columns).ptr == text.data() + cross &&
-                    std::from_chars(text.data() + cross + 1, end, mode.rate_hz).ptr == end && mode.columns > 0 &&
-                    mode.rate_hz > 0;
-  if (!good) throw InputError(fmt::format("'{}' is no mode; COLUMNSxRATE was expected, such as 1024x10", text));
-  return mode;
+void check_needed(const ConfigNode& node, const Profile& p) {
+  const auto needed = [&](const char* name, bool there, const char* what) {
+    if (!there) node.fail_at(name, fmt::format("is missing: {}", what));
+  };
+  needed("timing", !p.timing.empty(), "encoder or clock");
+  needed("elevation_deg", p.channels() > 0, "one value a channel");
+  needed("azimuth_offset_cw_deg", !p.azimuth_offset_cw_deg.empty(), "one value a channel");
+  needed("max_range_m", p.max_range_m > 0, "the farthest range that is reported");
+  needed("range_step_m", p.range_step_m > 0, "the least significant bit of a range");
+  needed("range_10_percent_m", p.range_10_percent_m > 0, "the range at which a 10 % target is seen");
+  needed("range_80_percent_m", p.range_80_percent_m > 0, "the range at which an 80 % target is seen");
+  needed("threshold_snr", p.threshold_snr > 0, "amplitude over noise at which half of the echoes are detected");
+  needed("sigma_from_m", !p.sigma_from_m.empty(), "ranges at which sigma_m changes, from 0 on");
+  needed("sigma_m", !p.sigma_m.empty(), "range noise from each of sigma_from_m on");
+  if (p.by_encoder())
+    needed("modes", !p.modes.empty(), "a sensor with timing: encoder has at least one, such as 1024x10");
+  else
+    needed("cycle_us", p.cycle_us > 0, "a sensor with timing: clock fires all its channels once in that time");
 }
 
-void check(const ConfigNode& node, const Profile& p) {
-  const auto same_length = [&](const char* name, const std::vector<double>& column, std::size_t n) {
-    if (column.size() != n) node.fail_at(name, fmt::format("has {} values; {} were expected", column.size(), n));
-  };
-  if (p.elevation_deg.empty()) node.fail("elevation_deg is missing: one value a channel");
-  same_length("azimuth_offset_cw_deg", p.azimuth_offset_cw_deg, p.channels());
-  same_length("firing_us", p.firing_us, p.channels());
-  same_length("ring", p.ring, p.channels());
-  same_length("sigma_m", p.sigma_m, p.sigma_from_m.size());
-  if (p.sigma_m.empty() || p.sigma_from_m.front() != 0) node.fail_at("sigma_from_m", "must begin with 0");
-  if (!std::is_sorted(p.sigma_from_m.begin(), p.sigma_from_m.end())) node.fail_at("sigma_from_m", "must ascend");
-  if (!(p.min_range_m < p.max_range_m)) node.fail_at("max_range_m", "must be above min_range_m");
-  if (!(p.range_10_percent_m < p.range_80_percent_m))
-    node.fail_at("range_80_percent_m", "must be above range_10_percent_m");
-  if (p.by_encoder() && p.modes.empty()) node.fail_at("modes", "is empty; a sensor with timing: encoder needs one");
-  if (!p.by_encoder() && !(p.cycle_us > 0)) node.fail_at("cycle_us", "must be above 0 with timing: clock");
-  for (const std::string& mode : p.modes) parse_mode(mode);
+std::vector<double> rings_by_elevation(const std::vector<double>& elevation_deg) {
+  std::vector<std::size_t> order(elevation_deg.size());
+  for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return elevation_deg[a] < elevation_deg[b]; });
+  std::vector<double> ring(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) ring[order[k]] = static_cast<double>(k);
+  return ring;
+}
+
+void check_channels(const ConfigNode& node, const Profile& p) {
+  for (const ChannelColumn& column : channel_columns()) {
+    const std::vector<double>& values = p.*column.values;
+    const bool optional = std::string_view(column.name).starts_with("origin_");
+    if (values.size() != p.channels() && !(optional && values.empty()))
+      node.fail_at(column.name, fmt::format("has {} values; {} were expected", values.size(), p.channels()));
+  }
+  for (std::size_t c = 1; c < p.channels(); ++c)
+    if (p.firing_us[c] < p.firing_us[c - 1])
+      node.fail_at("firing_us",
+                   fmt::format("channel {} fires at {} us, before channel {} at {} us: list the channels in "
+                               "firing order",
+                               c, p.firing_us[c], c - 1, p.firing_us[c - 1]));
+  std::vector<double> rings = p.ring;
+  std::sort(rings.begin(), rings.end());
+  const auto twice = std::adjacent_find(rings.begin(), rings.end());
+  if (twice != rings.end()) node.fail_at("ring", fmt::format("{} stands twice; every channel has its own", *twice));
+  for (const double ring : rings)
+    if (ring != std::floor(ring)) node.fail_at("ring", fmt::format("{} must be a whole number", ring));
+}
+
+void check_firing(const ConfigNode& node, const Profile& p, double cycle_us, const std::string& when) {
+  const double spread_us = p.firing_us.back() - p.firing_us.front();
+  if (spread_us >= cycle_us)
+    node.fail_at("firing_us", fmt::format("the channels take {} us to fire, and the next cycle begins after {} us{}",
+                                          spread_us, cycle_us, when));
+}
+
+void check_encoder_timing(const ConfigNode& node, const Profile& p) {
+  bool known = false;
+  for (const std::string& text : p.modes) {
+    Mode mode;
+    try {
+      mode = parse_mode(text);
+    } catch (const InputError& error) {
+      node.fail_at("modes", error.what());
+    }
+    check_firing(node, p, 1e6 / (mode.columns * mode.rate_hz), fmt::format(" in mode {}", text));
+    known = known || text == p.default_mode;
+    if (p.column_window.empty()) continue;
+    const bool whole = p.column_window.size() == 2 && p.column_window[0] == std::floor(p.column_window[0]) &&
+                       p.column_window[1] == std::floor(p.column_window[1]);
+    if (!whole || std::max(p.column_window[0], p.column_window[1]) >= mode.columns)
+      node.fail_at("column_window",
+                   fmt::format("must be [first, last] column, each from 0 to {} in mode {}", mode.columns - 1, text));
+  }
+  if (!known)
+    node.fail_at("default_mode", fmt::format("'{}' is not one of modes: {}", p.default_mode, fmt::join(p.modes, ", ")));
+}
+
+void check_clock_timing(const ConfigNode& node, const Profile& p) {
+  check_firing(node, p, p.cycle_us, "");
+  if (!p.modes.empty()) node.fail_at("modes", "belong to timing: encoder; with timing: clock give min/max_rate_hz");
+  if (!p.column_window.empty()) node.fail_at("column_window", "belongs to timing: encoder");
+  if (!(p.min_rate_hz <= p.default_rate_hz && p.default_rate_hz <= p.max_rate_hz))
+    node.fail_at("default_rate_hz", fmt::format("{} Hz does not lie between min_rate_hz ({}) and max_rate_hz ({})",
+                                                p.default_rate_hz, p.min_rate_hz, p.max_rate_hz));
+  if (p.cycle_us * p.max_rate_hz > 1e6 / 16)
+    node.fail_at("cycle_us", fmt::format("leaves fewer than 16 cycles in a revolution at {} Hz", p.max_rate_hz));
 }
 
 const std::vector<Profile>& all_profiles() {
@@ -57,6 +119,50 @@ const std::vector<Profile>& all_profiles() {
 
 }  // namespace
 
+std::span<const ChannelColumn> channel_columns() {
+  static constexpr ChannelColumn columns[] = {{"elevation_deg", &Profile::elevation_deg},
+                                              {"azimuth_offset_cw_deg", &Profile::azimuth_offset_cw_deg},
+                                              {"firing_us", &Profile::firing_us},
+                                              {"ring", &Profile::ring},
+                                              {"origin_forward_m", &Profile::origin_forward_m},
+                                              {"origin_left_m", &Profile::origin_left_m},
+                                              {"origin_up_m", &Profile::origin_up_m}};
+  return columns;
+}
+
+Mode parse_mode(const std::string& text) {
+  Mode mode;
+  const std::size_t cross = text.find('x');
+  const char* const end = text.data() + text.size();
+  const bool good = cross != std::string::npos &&
+                    std::from_chars(text.data(), text.data() + cross, mode.columns).ptr == text.data() + cross &&
+                    std::from_chars(text.data() + cross + 1, end, mode.rate_hz).ptr == end && mode.columns >= 16 &&
+                    mode.columns <= 65536 && mode.rate_hz > 0 && mode.rate_hz <= 1000;
+  if (!good)
+    throw InputError(
+        fmt::format("'{}' is no mode; COLUMNSxRATE was expected, such as 1024x10 (16 columns or more)", text));
+  return mode;
+}
+
+void complete(const ConfigNode& node, Profile& p) {
+  if (p.firing_us.empty()) p.firing_us.assign(p.channels(), 0.0);
+  if (p.ring.empty()) p.ring = rings_by_elevation(p.elevation_deg);
+  if (p.default_mode.empty() && p.modes.size() == 1) p.default_mode = p.modes.front();
+  check_needed(node, p);
+  check_channels(node, p);
+  if (p.by_encoder())
+    check_encoder_timing(node, p);
+  else
+    check_clock_timing(node, p);
+  if (p.sigma_m.size() != p.sigma_from_m.size())
+    node.fail_at("sigma_m", fmt::format("has {} values; {} were expected", p.sigma_m.size(), p.sigma_from_m.size()));
+  if (p.sigma_from_m.front() != 0) node.fail_at("sigma_from_m", "must begin with 0");
+  if (!std::is_sorted(p.sigma_from_m.begin(), p.sigma_from_m.end())) node.fail_at("sigma_from_m", "must ascend");
+  if (!(p.min_range_m < p.max_range_m)) node.fail_at("max_range_m", "must be above min_range_m");
+  if (!(p.range_10_percent_m < p.range_80_percent_m))
+    node.fail_at("range_80_percent_m", "must be above range_10_percent_m");
+}
+
 void Profile::visit(core::OptionVisitor& v) {
   v("summary", summary, "one line about the sensor");
   v("source", source, "where the numbers come from");
@@ -67,10 +173,13 @@ void Profile::visit(core::OptionVisitor& v) {
   v("min_rate_hz", min_rate_hz, "slowest spin (timing: clock)", {.above = 0});
   v("max_rate_hz", max_rate_hz, "fastest spin (timing: clock)", {.above = 0});
   v("cycle_us", cycle_us, "from one firing cycle to the next (timing: clock)", {.at_least = 0});
+  v("column_window", column_window, "[first, last] column that is fired, through 0 where first is larger; [] = all",
+    {.at_least = 0});
   v("azimuth_start_deg", azimuth_start_deg, "where a sweep begins, clockwise from sensor +x",
     {.at_least = 0, .below = 360});
   v("beam_origin_radius_m", beam_origin_radius_m, "circle about the spin axis on which beams start", {.at_least = 0});
   v("beam_origin_height_m", beam_origin_height_m, "of that circle above the sensor frame's origin");
+  v("range_offset_m", range_offset_m, "what a raw range counts beyond the way from the beam's origin");
   v("min_range_m", min_range_m, "nearer echoes are not reported", {.at_least = 0});
   v("max_range_m", max_range_m, "farther echoes are not reported", {.above = 0});
   v("range_step_m", range_step_m, "least significant bit of a range", {.above = 0});
@@ -81,9 +190,12 @@ void Profile::visit(core::OptionVisitor& v) {
   v("sigma_m", sigma_m, "range noise, one standard deviation", {.at_least = 0});
   v("channel_bias_sigma_m", channel_bias_sigma_m, "spread of the constant range errors of channels", {.at_least = 0});
   v("elevation_deg", elevation_deg, "of each channel, positive up", {.at_least = -90, .at_most = 90});
-  v("azimuth_offset_cw_deg", azimuth_offset_cw_deg, "of each channel, clockwise");
+  v("azimuth_offset_cw_deg", azimuth_offset_cw_deg, "of each channel, clockwise", {.at_least = -180, .at_most = 180});
   v("firing_us", firing_us, "firing instant of each channel inside the cycle, ascending", {.at_least = 0});
   v("ring", ring, "of each channel, counted from the lowest", {.at_least = 0, .at_most = 65535});
+  v("origin_forward_m", origin_forward_m, "of each channel's beam, along its heading from the circle; [] = 0");
+  v("origin_left_m", origin_left_m, "the same, left of its heading; [] = 0");
+  v("origin_up_m", origin_up_m, "the same, upwards; [] = 0");
 }
 
 double Profile::sigma_at_m(double range_m) const {
@@ -96,7 +208,7 @@ Profile parse_profile(const std::string& name, const std::string& yaml) {
   Profile result;
   result.name = name;
   node.read(result);
-  check(node, result);
+  complete(node, result);
   return result;
 }
 

@@ -1,40 +1,52 @@
-/// What is known of a spinning LiDAR, as data: profiles/NAME.yaml, one file a sensor.
+/// What is known of a spinning LiDAR, as data: profiles/NAME.yaml, one file a sensor, or a file of the user's.
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/config.h"
 #include "core/options.h"
 
 namespace tarmac::sim::lidar {
 
 /// Angles: azimuth is clockwise seen from above, 0 = sensor +x (forward); elevation is positive up.
-/// Sensor frame: x forward, y left, z up.
+/// Sensor frame: x forward, y left, z up. Channels stand in firing order.
 struct Profile {
   std::string name;
   std::string summary;
   std::string source;
-  /// "encoder": columns at fixed angles, all channels of one at once. "clock": a firing cycle every cycle_us.
-  std::string timing = "encoder";
+  /// "encoder": columns at fixed angles. "clock": a firing cycle every cycle_us.
+  std::string timing;
   std::vector<std::string> modes;  ///< of encoder timing: COLUMNSxRATE
   std::string default_mode;
   double default_rate_hz = 10, min_rate_hz = 5, max_rate_hz = 20;  ///< of clock timing
   double cycle_us = 0;
+  std::vector<double> column_window;  ///< of encoder timing: {first, last} column that is fired; empty: all
   double azimuth_start_deg = 180;
-  double beam_origin_radius_m = 0, beam_origin_height_m = 0;
+  double beam_origin_radius_m = 0, beam_origin_height_m = 0, range_offset_m = 0;
   double min_range_m = 0, max_range_m = 0, range_step_m = 0;
   double range_10_percent_m = 0, range_80_percent_m = 0;
   double threshold_snr = 0;
   std::vector<double> sigma_from_m, sigma_m;
   double channel_bias_sigma_m = 0;
   std::vector<double> elevation_deg, azimuth_offset_cw_deg, firing_us, ring;  ///< one value a channel
+  /// One value a channel, or none: where its beam starts, from the head's circle, along and left of the beam's own
+  /// heading, and up.
+  std::vector<double> origin_forward_m, origin_left_m, origin_up_m;
 
   void visit(core::OptionVisitor& v);
   std::size_t channels() const { return elevation_deg.size(); }
   bool by_encoder() const { return timing == "encoder"; }
   double sigma_at_m(double range_m) const;
 };
+
+/// The values of a channel that stand in a table of their own (`channels: table.csv`) or in the profile.
+struct ChannelColumn {
+  const char* name;
+  std::vector<double> Profile::*values;
+};
+std::span<const ChannelColumn> channel_columns();
 
 struct EmbeddedProfile {
   const char* name;
@@ -43,7 +55,13 @@ struct EmbeddedProfile {
 /// The files under profiles/, as they were when the library was built.
 std::span<const EmbeddedProfile> embedded_profiles();
 
-/// Throws InputError (file, line, field) when the text is no profile or its tables differ in length.
+/// Fills in what may be left out (firing_us: all at once; ring: counted from the lowest beam; default_mode where there
+/// is one mode only) and throws InputError (file, line, field) for a sensor that could not be: missing fields, tables
+/// of unequal length, channels out of firing order, cycles that overlap, rings that stand twice, modes that are none.
+/// @param node  the block that was read, for the errors
+void complete(const core::ConfigNode& node, Profile& profile);
+
+/// Throws InputError as complete() does, or when the text is no profile.
 Profile parse_profile(const std::string& name, const std::string& yaml);
 std::vector<std::string> profile_names();
 /// Throws InputError listing what there is, with did-you-mean.
@@ -54,6 +72,8 @@ struct Mode {
   int columns = 0;
   double rate_hz = 10;
 };
+/// "1024x10"; throws InputError when the text is no mode.
+Mode parse_mode(const std::string& text);
 /// Fills in the sensor's default where 0 is given. Throws InputError listing the modes when the sensor has no such one.
 Mode mode_of(const Profile& profile, int columns, double rate_hz);
 /// "1024x10"

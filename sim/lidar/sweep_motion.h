@@ -23,8 +23,8 @@ struct BodyState {
 /// motion itself is asked.
 class SweepMotion {
  public:
-  static constexpr double position_tolerance_m = 1e-7;
-  static constexpr double angle_tolerance_rad = 1e-9;
+  static constexpr double position_tolerance_m = 1e-6;
+  static constexpr double angle_tolerance_rad = 1e-8;
 
   /// Keeps a reference to `motion`. Throws OutOfSpan when it does not cover [begin, end].
   SweepMotion(const core::SmoothTrajectory& motion, core::Time begin, core::Time end);
@@ -34,13 +34,13 @@ class SweepMotion {
   std::size_t pieces() const { return pieces_.size(); }
 
  private:
-  static constexpr int nodes = 8;
+  static constexpr int nodes = 12;
   using Values = Eigen::Matrix<double, 12, 1>;  // position, rotation vector, velocity, rate
   struct Piece {
     core::Time begin, end;
     bool exact = false;  // ask the motion
     Eigen::Matrix3d R_world_middle;
-    std::array<double, nodes> s;      // times of the nodes from the piece's begin [s]
+    std::array<double, nodes> s;       // times of the nodes from the piece's begin [s]
     std::array<Values, nodes> newton;  // divided differences
   };
   Piece fit(core::Time begin, core::Time end) const;

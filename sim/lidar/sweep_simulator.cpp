@@ -54,6 +54,9 @@ struct CycleRays {
     origin = body.p_world + arm - base + R_world_lidar * origin_sensor;
     rate = body.v_world + body.R_world_body * body.omega_body.cross(T_body_lidar.translation()) + swing * origin_sensor;
   }
+
+  /// How far a beam's own origin, in the head's frame, moves the ray.
+  Vector3d shift(const Vector3d& offset, double dt_s) const { return (R + dt_s * S) * offset; }
 };
 
 struct Beams {
@@ -93,9 +96,8 @@ TARMAC_VECTOR_LOOP void raw_ranges(std::size_t count, const double* __restrict t
 
 /// p = origin + (range - offset) direction, by the nominal table: what the sensor's driver computes from a raw range.
 TARMAC_VECTOR_LOOP void place_cycle(std::size_t channels, const Beams b, double cos_azimuth, double sin_azimuth,
-                                    const double* __restrict origin, double offset_m,
-                                    const double* __restrict range_m, float* __restrict x_m, float* __restrict y_m,
-                                    float* __restrict z_m) {
+                                    const double* __restrict origin, double offset_m, const double* __restrict range_m,
+                                    float* __restrict x_m, float* __restrict y_m, float* __restrict z_m) {
   const double ox = origin[0], oy = origin[1], oz = origin[2];
   for (std::size_t c = 0; c < channels; ++c) {
     const double r = range_m[c] - offset_m, x = b.x[c], y = b.y[c];
@@ -103,6 +105,12 @@ TARMAC_VECTOR_LOOP void place_cycle(std::size_t channels, const Beams b, double 
     y_m[c] = static_cast<float>(oy + r * (y * cos_azimuth - x * sin_azimuth));
     z_m[c] = static_cast<float>(oz + r * b.z[c]);
   }
+}
+
+void shift(raycast::Rays& rays, std::size_t i, const Vector3d& by) {
+  rays.ox[i] += by.x();
+  rays.oy[i] += by.y();
+  rays.oz[i] += by.z();
 }
 
 template <class T>
@@ -132,8 +140,16 @@ SweepSimulator::SweepSimulator(const Profile& profile, const Mode& mode, const M
                                std::shared_ptr<const raycast::Tracer> tracer,
                                std::shared_ptr<const scenes::Scene> scene,
                                std::shared_ptr<const core::SmoothTrajectory> motion)
+    : SweepSimulator(profile, FiringTable(profile, mode), mounting, noise, seed, std::move(tracer), std::move(scene),
+                     std::move(motion)) {}
+
+SweepSimulator::SweepSimulator(const Profile& profile, FiringTable firing, const Mounting& mounting,
+                               const NoiseOptions& noise, std::uint64_t seed,
+                               std::shared_ptr<const raycast::Tracer> tracer,
+                               std::shared_ptr<const scenes::Scene> scene,
+                               std::shared_ptr<const core::SmoothTrajectory> motion)
     : profile_(profile),
-      firing_(profile, mode),
+      firing_(std::move(firing)),
       mounting_(mounting),
       options_(noise),
       tracer_(std::move(tracer)),
@@ -147,7 +163,9 @@ SweepSimulator::SweepSimulator(const Profile& profile, const Mode& mode, const M
       batch_cycles_(std::max<std::size_t>(1, batch_rays / (tile * firing_.channels())) * tile),
       batch_tiles_(firing_.tiles(batch_cycles_)) {
   for (std::size_t c = 0; c < firing_.channels(); ++c) {
-    const Vector3d beam = firing_.direction({Time{}, 1, 0}, c);
+    const Cycle ahead{Time{}, 1, 0, 1, 0};
+    const Vector3d beam = firing_.direction(ahead, c);
+    origin_offset_.push_back(firing_.origin_offset(ahead, c));
     beam_x_.push_back(beam.x());
     beam_y_.push_back(beam.y());
     beam_z_.push_back(beam.z());
@@ -227,6 +245,9 @@ void SweepSimulator::aim(const SweepSpan& span, const SweepMotion& motion, std::
     const std::size_t i = k * channels;
     aim_cycle(channels, beams, c.R.data(), c.S.data(), c.origin.data(), c.rate.data(),
               {&rays.ox[i], &rays.oy[i], &rays.oz[i], &rays.dx[i], &rays.dy[i], &rays.dz[i]});
+    if (firing_.channel_origins())
+      for (std::size_t channel = 0; channel < channels; ++channel)
+        shift(rays, i + channel, c.shift(origin_offset_[channel], offset_s_[channel]));
     const auto cycle_ns = static_cast<std::int32_t>((cycle.t - span.begin).count());
     for (std::size_t channel = 0; channel < channels; ++channel)
       rays.t_ns[i + channel] = cycle_ns + firing_.offset_ns(channel);
@@ -253,16 +274,25 @@ void SweepSimulator::report(Workspace& w, SimulatedSweep& out) const {
   const std::size_t channels = firing_.channels(), firings = w.echoes.size();
   const Beams beams{beam_x_.data(), beam_y_.data(), beam_z_.data(), offset_s_.data()};
   const Echoes& e = w.echoes;
-  for (auto* v : {&w.x_m, &w.y_m, &w.z_m, &w.kept.x_m, &w.kept.y_m, &w.kept.z_m, &w.kept.intensity})
-    v->resize(firings);
+  for (auto* v : {&w.x_m, &w.y_m, &w.z_m, &w.kept.x_m, &w.kept.y_m, &w.kept.z_m, &w.kept.intensity}) v->resize(firings);
   w.kept.t_ns.resize(firings);
   w.kept.ring.resize(firings);
   w.kept_instance.resize(firings);
   std::size_t kept = 0;
   for (std::size_t k = 0, i = 0; k < w.cycles.size(); ++k) {
-    const Vector3d origin = firing_.origin(w.cycles[k]);
-    place_cycle(channels, beams, w.cycles[k].cos_azimuth, w.cycles[k].sin_azimuth, origin.data(),
-                firing_.range_offset_m(), &e.range_m[i], &w.x_m[i], &w.y_m[i], &w.z_m[i]);
+    const Cycle cycle = w.cycles[k].reported();
+    const Vector3d origin = firing_.origin(cycle);
+    place_cycle(channels, beams, cycle.cos_azimuth, cycle.sin_azimuth, origin.data(), firing_.range_offset_m(),
+                &e.range_m[i], &w.x_m[i], &w.y_m[i], &w.z_m[i]);
+    if (firing_.channel_origins()) {
+      const Matrix3d turn = turned_by(cycle);
+      for (std::size_t c = 0; c < channels; ++c) {
+        const Eigen::Vector3f offset = (turn * origin_offset_[c]).cast<float>();
+        w.x_m[i + c] += offset.x();
+        w.y_m[i + c] += offset.y();
+        w.z_m[i + c] += offset.z();
+      }
+    }
     // Each is written; those that do not count are written over by the next.
     for (std::size_t c = 0; c < channels; ++c, ++i) {
       w.kept.x_m[kept] = w.x_m[i];

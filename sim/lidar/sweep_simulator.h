@@ -59,12 +59,17 @@ struct AimedSweep {
 
 /// Simulates sweeps in any order, on any number of threads at once: each is a function of its index alone.
 ///
-/// A beam leaves from the pose of the body at its cycle's time (SweepMotion: exact to 0.1 micrometres); where channels fire one after the other, the
-/// body's velocity and rate carry the pose over the rest of the cycle (first order; over 35 microseconds the neglected
-/// second order is below a micrometre at 100 m), while the spin of the head is in the beam table exactly.
+/// A beam leaves from the pose of the body at its cycle's time (SweepMotion: within a micrometre of it); where channels
+/// fire one after the other, the body's velocity and rate carry the pose over the rest of the cycle (first order; over
+/// 35 microseconds the neglected second order is below a micrometre at 100 m), while the spin of the head is in the
+/// beam table exactly.
 class SweepSimulator {
  public:
   SweepSimulator(const Profile& profile, const Mode& mode, const Mounting& mounting, const NoiseOptions& noise,
+                 std::uint64_t seed, std::shared_ptr<const raycast::Tracer> tracer,
+                 std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion);
+  /// The same with a head that turns unevenly or fires at recorded times.
+  SweepSimulator(const Profile& profile, FiringTable firing, const Mounting& mounting, const NoiseOptions& noise,
                  std::uint64_t seed, std::shared_ptr<const raycast::Tracer> tracer,
                  std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion);
 
@@ -98,6 +103,7 @@ class SweepSimulator {
   Intensity intensity_;
   // Of each channel: the beam at azimuth 0 (unit vector, sensor frame), seconds into the cycle, ring.
   std::vector<double> beam_x_, beam_y_, beam_z_, offset_s_;
+  std::vector<Eigen::Vector3d> origin_offset_;  // of the beam from the cycle's origin, at azimuth 0 [m]
   std::vector<std::uint16_t> ring_;
   std::size_t batch_cycles_;
   std::vector<std::uint32_t> batch_tiles_;

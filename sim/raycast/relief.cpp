@@ -93,20 +93,34 @@ void ReliefBatch::reserve(std::size_t count) {
     v->resize(count);
   ray_.resize(count);
   done_.resize(count);
+  kept_.resize(count);
 }
 
 /// Notes where each ray stands and moves those that are not done to the front; returns how many there are.
 std::size_t ReliefBatch::compact(std::size_t active) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < active; ++k) {
-    const std::uint32_t ray = ray_[k];
-    s_out_[ray] = s_[k], slope_x_out_[ray] = slope_x_[k], slope_y_out_[ray] = slope_y_[k];
-    ray_[kept] = ray;
-    ax_m_[kept] = ax_m_[k], ay_m_[kept] = ay_m_[k];
-    adx_[kept] = adx_[k], ady_[kept] = ady_[k], and_[kept] = and_[k];
-    s_[kept] = s_[k], above_[kept] = above_[k], below_[kept] = below_[k];
-    highest_m_[kept] = highest_m_[k], retreat_[kept] = retreat_[k];
+    kept_[kept] = static_cast<std::uint32_t>(k);
     kept += done_[k] == 0;
+  }
+  if (active == size_) {  // the rays are still in their own order
+    std::copy_n(s_.begin(), size_, s_out_.begin());
+    std::copy_n(slope_x_.begin(), size_, slope_x_out_.begin());
+    std::copy_n(slope_y_.begin(), size_, slope_y_out_.begin());
+  } else {
+    for (std::size_t k = 0; k < active; ++k) {
+      const std::uint32_t ray = ray_[k];
+      s_out_[ray] = s_[k], slope_x_out_[ray] = slope_x_[k], slope_y_out_[ray] = slope_y_[k];
+    }
+  }
+  if (kept == active) return kept;
+  for (std::size_t k = 0; k < kept; ++k) {
+    const std::uint32_t from = kept_[k];
+    ray_[k] = ray_[from];
+    ax_m_[k] = ax_m_[from], ay_m_[k] = ay_m_[from];
+    adx_[k] = adx_[from], ady_[k] = ady_[from], and_[k] = and_[from];
+    s_[k] = s_[from], above_[k] = above_[from], below_[k] = below_[from];
+    highest_m_[k] = highest_m_[from], retreat_[k] = retreat_[from];
   }
   return kept;
 }
@@ -131,7 +145,8 @@ void ReliefBatch::solve(const scenes::Relief& relief) {
     relief.heights_m(active, x_m_.data(), y_m_.data(), height_m_.data(), slope_x_.data(), slope_y_.data());
     bracket(active, it);
     step(active, it);
-    active = compact(active);
+    // Hardly a ray is done after the first look; it stays where it is until the second.
+    if (i > 0) active = compact(active);
   }
   shade(size_, dx_.data(), dy_.data(), nx_.data(), ny_.data(), nz_.data(), nd_.data(), slope_x_out_.data(),
         slope_y_out_.data(), cosine_.data());

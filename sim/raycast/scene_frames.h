@@ -13,7 +13,7 @@
 namespace tarmac::sim::raycast {
 
 /// n'x = d in the mesh's frame; n is of unit length, or zero for a triangle without area.
-struct TrianglePlane {
+struct alignas(32) TrianglePlane {  // never across two cache lines: rays fetch them at random
   Eigen::Vector3d normal;
   double offset_m;
 };

@@ -17,6 +17,11 @@ constexpr std::size_t tile = SweepTracer::tile;
 // recomputed distance that is farther off than this belongs to a triangle seen edge-on, and Embree's is kept.
 constexpr double max_correction_m = 0.05;
 
+struct PackedTile {
+  RTCRayHit16 packet;
+  alignas(64) int valid[tile];
+};
+
 RTCIntersectContext coherent_context() {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -35,8 +40,6 @@ RayArrays arrays_of(const Rays& rays) {
 struct HitArrays {
   double* t_m;
   float *nx, *ny, *nz, *cos_incidence, *nd;
-  std::uint16_t* material;
-  std::uint32_t* surface;
 };
 
 TARMAC_VECTOR_LOOP void load_rays(const std::uint32_t* lanes, const RayArrays rays, RTCRay16& ray) {
@@ -52,17 +55,15 @@ TARMAC_VECTOR_LOOP void load_rays(const std::uint32_t* lanes, const RayArrays ra
   }
 }
 
-/// Where each ray meets the plane of its triangle. `planes` holds x, y, z of the normal and the offset n'x, in the
-/// world; base is where the rays' origins count from.
+/// Where each ray meets its plane. `planes` holds x, y, z of the normals and the offsets n'x, in the world; base is
+/// where the rays' origins count from.
 TARMAC_VECTOR_LOOP void meet_planes(std::size_t count, const RayArrays rays, const double* __restrict base,
-                                    const double* __restrict planes, const std::uint32_t* __restrict surfaces,
-                                    const std::uint32_t* __restrict triangle, const float* __restrict t_embree_m,
+                                    const double* __restrict planes, const float* __restrict t_embree_m,
                                     const HitArrays hits) {
   const double bx = base[0], by = base[1], bz = base[2];
 #pragma GCC ivdep
   for (std::size_t k = 0; k < count; ++k) {
-    const int at = 4 * static_cast<int>(triangle[k]);
-    const double nx = planes[at], ny = planes[at + 1], nz = planes[at + 2], offset = planes[at + 3];
+    const double nx = planes[4 * k], ny = planes[4 * k + 1], nz = planes[4 * k + 2], offset = planes[4 * k + 3];
     const double nd = nx * rays.dx[k] + ny * rays.dy[k] + nz * rays.dz[k];
     const double from_plane = offset - (nx * (bx + rays.ox[k]) + ny * (by + rays.oy[k]) + nz * (bz + rays.oz[k]));
     // The comparison is false as well when the plane holds the ray, or when there is none (not a number).
@@ -76,12 +77,6 @@ TARMAC_VECTOR_LOOP void meet_planes(std::size_t count, const RayArrays rays, con
     hits.nx[k] = turn * static_cast<float>(nx);
     hits.ny[k] = turn * static_cast<float>(ny);
     hits.nz[k] = turn * static_cast<float>(nz);
-  }
-#pragma GCC ivdep
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::uint32_t surface = surfaces[triangle[k]];
-    hits.surface[k] = surface;
-    hits.material[k] = static_cast<std::uint16_t>(surface);
   }
 }
 
@@ -102,6 +97,7 @@ void Hits::resize(std::size_t n) {
 void TraceScratch::resize(std::size_t rays) {
   triangle.assign(rays, 0);
   t_embree_m.assign(rays, std::numeric_limits<float>::infinity());
+  planes.resize(rays);
   nd.resize(rays);
   surface.resize(rays);
   moving.clear();
@@ -116,29 +112,30 @@ void SweepTracer::trace(const Rays& rays, std::span<const std::uint32_t> order, 
   std::fill(hits.instance.begin(), hits.instance.end(), Hits::nothing);
   s.scratch.resize(rays.size());
   RTCIntersectContext context = coherent_context();
-  RTCRayHit16 packet;
-  alignas(64) int valid[tile];
-  s.set_up(packet);
-  for (std::size_t first = 0; first + tile <= order.size(); first += tile) {
-    const std::span<const std::uint32_t> lanes = order.subspan(first, tile);
-    s.load(rays, lanes, packet, valid);
-    rtcIntersect16(valid, s.static_scene, &context, &packet);
-    // tfar now stands at the static hit: an actor replaces it only where it is nearer.
-    if (s.moving_scene) rtcIntersect16(valid, s.moving_scene.get(), &context, &packet);
-    s.keep(lanes, packet, hits);
+  // A few tiles at a time: packed, traced, kept. One by one, Embree would wait for the packing's stores to land.
+  constexpr std::size_t group = 8;
+  PackedTile tiles[group];
+  for (PackedTile& t : tiles) s.set_up(t.packet);
+  const std::size_t count = order.size() / tile;
+  for (std::size_t first = 0; first < count; first += group) {
+    const std::size_t here = std::min(group, count - first);
+    for (std::size_t k = 0; k < here; ++k)
+      s.load(rays, order.subspan((first + k) * tile, tile), tiles[k].packet, tiles[k].valid);
+    for (std::size_t k = 0; k < here; ++k) {
+      rtcIntersect16(tiles[k].valid, s.static_scene, &context, &tiles[k].packet);
+      // tfar now stands at the static hit: an actor replaces it only where it is nearer.
+      if (s.moving_scene) rtcIntersect16(tiles[k].valid, s.moving_scene.get(), &context, &tiles[k].packet);
+    }
+    for (std::size_t k = 0; k < here; ++k) s.keep(order.subspan((first + k) * tile, tile), tiles[k].packet, hits);
   }
   s.finish_static(rays, hits);
   s.finish_moving(rays, hits);
 }
 
 struct PackedTiles::State {
-  struct Tile {
-    RTCRayHit16 packet;
-    alignas(64) int valid[SweepTracer::tile];
-  };
   RTCScene static_scene = nullptr, moving_scene = nullptr;
   float reach_m = 0;
-  std::vector<Tile> tiles;
+  std::vector<PackedTile> tiles;
   std::size_t rays = 0;
 };
 
@@ -152,7 +149,7 @@ std::size_t PackedTiles::rays() const {
 }
 
 void PackedTiles::reset() {
-  for (State::Tile& t : state_->tiles)
+  for (PackedTile& t : state_->tiles)
     for (std::size_t lane = 0; lane < SweepTracer::tile; ++lane) {
       t.packet.ray.tfar[lane] = state_->reach_m;
       t.packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
@@ -162,7 +159,7 @@ void PackedTiles::reset() {
 
 void PackedTiles::intersect() {
   RTCIntersectContext context = coherent_context();
-  for (State::Tile& t : state_->tiles) {
+  for (PackedTile& t : state_->tiles) {
     rtcIntersect16(t.valid, state_->static_scene, &context, &t.packet);
     if (state_->moving_scene) rtcIntersect16(t.valid, state_->moving_scene, &context, &t.packet);
   }
@@ -170,7 +167,7 @@ void PackedTiles::intersect() {
 
 std::size_t PackedTiles::hits() const {
   std::size_t count = 0;
-  for (const State::Tile& t : state_->tiles)
+  for (const PackedTile& t : state_->tiles)
     for (std::size_t lane = 0; lane < SweepTracer::tile; ++lane)
       count += t.valid[lane] != 0 && t.packet.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
   return count;
@@ -221,8 +218,12 @@ void SweepTracer::State::keep(std::span<const std::uint32_t> lanes, const RTCRay
     if (i == no_ray || id == RTC_INVALID_GEOMETRY_ID) continue;
     const std::uint32_t carried = packet.hit.instID[0][lane];
     if (carried == RTC_INVALID_GEOMETRY_ID) {
+      const std::uint32_t row = tracer->still.first[id] + triangle;
+      // Wanted when all tiles are traced; fetched while Embree works on the next.
+      __builtin_prefetch(&tracer->still.planes[row]);
+      __builtin_prefetch(&tracer->still.surface[row]);
       hits.instance[i] = id;
-      scratch.triangle[i] = tracer->still.first[id] + triangle;
+      scratch.triangle[i] = row;
       scratch.t_embree_m[i] = packet.ray.tfar[lane];
     } else {
       scratch.moving.push_back({i, carried, triangle, packet.ray.tfar[lane]});
@@ -232,11 +233,16 @@ void SweepTracer::State::keep(std::span<const std::uint32_t> lanes, const RTCRay
 
 void SweepTracer::State::finish_static(const Rays& rays, Hits& hits) {
   const StaticTriangles& still = tracer->still;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t triangle = scratch.triangle[i], surface = still.surface[triangle];
+    scratch.planes[i] = still.planes[triangle];
+    scratch.surface[i] = surface;
+    hits.material[i] = static_cast<std::uint16_t>(surface);
+  }
   static_assert(sizeof(TrianglePlane) == 4 * sizeof(double));
-  meet_planes(rays.size(), arrays_of(rays), base.data(), still.planes.front().normal.data(), still.surface.data(),
-              scratch.triangle.data(), scratch.t_embree_m.data(),
-              {hits.t_m.data(), hits.nx.data(), hits.ny.data(), hits.nz.data(), hits.cos_incidence.data(),
-               scratch.nd.data(), hits.material.data(), scratch.surface.data()});
+  meet_planes(
+      rays.size(), arrays_of(rays), base.data(), scratch.planes.front().normal.data(), scratch.t_embree_m.data(),
+      {hits.t_m.data(), hits.nx.data(), hits.ny.data(), hits.nz.data(), hits.cos_incidence.data(), scratch.nd.data()});
   if (!tracer->scene->relief) return;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if ((scratch.surface[i] & StaticTriangles::relief_bit) == 0 || !ReliefBatch::applies(scratch.nd[i])) continue;

@@ -59,6 +59,7 @@ struct Tracer::State {
 struct TraceScratch {
   std::vector<std::uint32_t> triangle;  ///< index into StaticTriangles, by ray
   std::vector<float> t_embree_m;
+  std::vector<TrianglePlane> planes;   ///< of `triangle`: rows side by side are quicker to walk than gathers
   std::vector<float> nd;               ///< normal times direction, negative
   std::vector<std::uint32_t> surface;  ///< of StaticTriangles
   struct Moving {

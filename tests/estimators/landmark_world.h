@@ -38,6 +38,34 @@ inline std::vector<Eigen::Vector3d> landmarks(double radius_m, double spacing_m,
   return points;
 }
 
+/// The walls of a room, 16 x 13 x 6 m about the origin, as fixed points some 0.3 m apart: surfaces for methods that
+/// need them, and points to be met again for those that do not. In random order.
+inline std::vector<Eigen::Vector3d> wall_points(std::uint64_t seed = 1) {
+  const core::RandomStream random(seed, "test/walls");
+  const Eigen::Vector3d half(8, 6.5, 3);
+  constexpr double kSpacing_m = 0.3;
+  std::vector<std::pair<double, Eigen::Vector3d>> ordered;
+  std::uint64_t draw = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    for (const double side : {-1.0, 1.0}) {
+      for (double a = -half[u] + 0.2; a < half[u]; a += kSpacing_m) {
+        for (double b = -half[v] + 0.2; b < half[v]; b += kSpacing_m, ++draw) {
+          Eigen::Vector3d p;
+          p[axis] = side * half[axis];
+          p[u] = a + 0.1 * random.uniform(draw, 0);
+          p[v] = b + 0.1 * random.uniform(draw, 1);
+          ordered.emplace_back(random.uniform(draw, 3), p);
+        }
+      }
+    }
+  }
+  std::sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Eigen::Vector3d> points;
+  for (const auto& [order, p] : ordered) points.push_back(p);
+  return points;
+}
+
 struct SweepSetup {
   double period_s = 0.1;
   bool flash = false;  ///< every point at the sweep's end: no distortion

@@ -15,6 +15,19 @@ namespace {
 using core::SE3;
 using core::SweepStatus;
 
+/// Surfaces for the methods that need them, and points off them for those that match points.
+std::vector<Eigen::Vector3d> world_points() {
+  const std::vector<Eigen::Vector3d> points = tests::wall_points();
+  const std::vector<Eigen::Vector3d> landmarks = tests::landmarks(18, 2.4, 0.8);
+  // Mixed, so that firing order has nothing to do with which is which.
+  std::vector<Eigen::Vector3d> mixed;
+  for (std::size_t i = 0; i < std::max(points.size(), landmarks.size()); ++i) {
+    if (i < points.size()) mixed.push_back(points[i]);
+    if (i < landmarks.size()) mixed.push_back(landmarks[i]);
+  }
+  return mixed;
+}
+
 class EveryEstimator : public testing::TestWithParam<const EstimatorEntry*> {
  protected:
   RunResult run(const core::Recording& recording, int threads = 1) {
@@ -35,7 +48,7 @@ class EveryEstimator : public testing::TestWithParam<const EstimatorEntry*> {
       return T_there_here * core::se3::exp(xi);
     };
     const SE3 T_body_lidar = rig_.lidars[0].T_body_lidar;
-    std::vector<Eigen::Vector3d> world = tests::landmarks(18, 2.4, 0.8);
+    std::vector<Eigen::Vector3d> world = tests::wall_points();
     for (Eigen::Vector3d& p : world) p = T_there_here * p;
     std::vector<core::LidarSweep> sweeps;
     const tests::Motion lidar = [&](double t_s) -> SE3 { return body(t_s) * T_body_lidar; };
@@ -65,8 +78,8 @@ class EveryEstimator : public testing::TestWithParam<const EstimatorEntry*> {
 
 TEST_P(EveryEstimator, AStillRigGivesAStillTrajectory) {
   std::vector<core::LidarSweep> sweeps;
-  const std::vector<Eigen::Vector3d> world = tests::landmarks(18, 2.4, 0.8);
-  for (int k = 0; k < 30; ++k) sweeps.push_back(tests::sweep_at(k, world, tests::still(), {.noise_m = 0.01}));
+  const std::vector<Eigen::Vector3d> world = world_points();
+  for (int k = 0; k < 30; ++k) sweeps.push_back(tests::sweep_at(k, world, tests::still(), {.noise_m = 0.005}));
   const RunResult result = run(tests::write_recording(folder_ / "still", rig_, sweeps, tests::imu_at_rest(rig_, 3)));
   std::vector<SE3> poses;
   for (const core::SweepResult& sweep : result.estimate.sweeps) {

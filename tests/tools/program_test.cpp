@@ -129,6 +129,22 @@ TEST_F(Program, RecordingTellsNothingOfTheScenario) {
   }
 }
 
+TEST_F(Program, FaultsOfTheCommandLineReachRecordingTruthAndReport) {
+  // Stamps before the recording's begin, sweeps and packets that never came: all is scored all the same.
+  const Ended ended = tarmac({"run", "short.yaml", "-o", "faulty", "-e", "kiss-icp,dead-reckoning", "--jobs", "2",
+                              "--set", "faults.lidar.clock_offset_ms=-5", "--set", "faults.imu.clock_offset_ms=5",
+                              "--set", "faults.lidar.lost_sweeps=0.1", "--set", "faults.lidar.lost_packets=0.05",
+                              "--set", "faults.lidar.sweep_jitter_ms=0.2"});
+  ASSERT_EQ(ended.code, 0) << ended.text;
+  const std::string log = core::read_file(path("faulty") / "truth" / "faults.json");
+  for (const char* kind : {"clock-offset", "lost-sweeps", "lost-packets", "sweep-jitter"})
+    EXPECT_THAT(log, HasSubstr(std::string("\"kind\": \"") + kind));
+  EXPECT_THAT(core::read_file(path("faulty") / "scenario.yaml"), HasSubstr("clock_offset_ms: -5"));
+  EXPECT_THAT(core::read_file(path("faulty") / "recording" / "manifest.json"), testing::Not(HasSubstr("fault")));
+  EXPECT_THAT(core::read_file(path("faulty") / "kiss-icp" / "evaluation.json"), HasSubstr("point_error_rms_m"));
+  EXPECT_TRUE(fs::is_regular_file(path("faulty") / "report.html"));
+}
+
 TEST_F(Program, ForeignProgramsAreScoredAndTheirFailuresAreRecorded) {
   const fs::path run = finished_run();
   // The truth itself as an outside program's answer: whatever the scores say of it, they say of the path through
@@ -201,11 +217,14 @@ TEST_F(Program, BadInputIsRefusedWithFileLineAndField) {
   expect_refused({"run", "short.yaml", "-o", "bad", "-e", "kiss"}, HasSubstr("kiss-icp"));
   expect_refused({"run", "short.yaml", "-o", "bad", "--set", "rig.lidar.model=[1]"},
                  HasSubstr("--set rig.lidar.model"));
+  expect_refused({"run", "short.yaml", "-o", "bad", "--set", "faults.lidar.clock_ofset_ms=5"},
+                 AllOf(HasSubstr("--set faults.lidar.clock_ofset_ms"), HasSubstr("did you mean 'clock_offset_ms'")));
   expect_refused({"run", "no-such-scenario"}, HasSubstr("no-such-scenario"));
   expect_refused({"estimate", "short.yaml", "-o", "bad"}, HasSubstr("short.yaml"));
   expect_refused({"evaluate", "."}, HasSubstr("provenance.json"));
   expect_refused({"evaluate", "--truth", "short.yaml", "--estimate", "short.yaml"}, HasSubstr("short.yaml"));
   expect_refused({"describe", "sensor", "vlp-61"}, HasSubstr("vlp-16"));
+  expect_refused({"describe", "fault", "lida"}, HasSubstr("did you mean 'lidar'"));
   expect_refused({"fly"}, HasSubstr("fly"));
   expect_refused({"run"}, HasSubstr("scenario"));
   expect_refused({"simulate", "short.yaml"}, HasSubstr("--out"));
@@ -310,8 +329,9 @@ TEST_F(Program, ListsAndDescribesWhatThereIs) {
   EXPECT_THAT(tarmac({"describe", "estimator", "kiss-icp"}).text,
               AllOf(HasSubstr("voxel_size_m"), HasSubstr("default 1")));
   EXPECT_THAT(tarmac({"describe", "sensor", "vlp-16"}).text, HasSubstr("16"));
+  EXPECT_THAT(tarmac({"describe", "fault", "lidar"}).text, HasSubstr("faults.lidar.point_time_unit"));
   EXPECT_THAT(tarmac({"--version"}).text, HasSubstr("tarmac"));
-  for (const char* kind : {"scenarios", "scenes", "motions", "sensors", "imus", "estimators", "metrics"}) {
+  for (const char* kind : {"scenarios", "scenes", "motions", "sensors", "imus", "faults", "estimators", "metrics"}) {
     EXPECT_EQ(tarmac({"list", kind, "--json"}).code, 0) << kind;
   }
 }

@@ -100,6 +100,23 @@ std::vector<Entry> catalogue_entries(const std::vector<sim::CatalogueEntry>& cat
   return entries;
 }
 
+std::vector<Entry> fault_entries() {
+  return {{"lidar", "clock, stamps, point times, lost data and mounting of the LiDAR"},
+          {"imu", "clock, stamps, lost samples and mounting of the IMU"}};
+}
+
+/// The options of one sensor's faults, by the names that --set takes.
+std::string describe_fault(const std::string& name) {
+  std::vector<core::OptionDescription> options;
+  for (core::OptionDescription& option : sim::describe_fault_options()) {
+    if (!option.name.starts_with(name + ".")) continue;
+    option.name = "faults." + option.name;
+    options.push_back(std::move(option));
+  }
+  if (options.empty()) unknown("fault", name, fault_entries());
+  return options_text(options);
+}
+
 std::vector<Entry> estimator_entries() {
   std::vector<Entry> entries;
   for (const auto* entry : estimators::estimators()) entries.push_back({entry->name, entry->summary});
@@ -137,6 +154,7 @@ const std::vector<Kind>& kinds() {
        [](const std::string& name) { return options_text(sim::truth::describe_motion(name)); }},
       {"sensors", "sensor", [] { return catalogue_entries(sim::lidar_catalogue()); }, sim::describe_lidar},
       {"imus", "imu", [] { return catalogue_entries(sim::imu_catalogue()); }, sim::describe_imu},
+      {"faults", "fault", fault_entries, describe_fault},
       {"estimators", "estimator", estimator_entries, describe_estimator},
       {"metrics", "metric", metric_entries, describe_metric}};
   return all;

@@ -10,7 +10,7 @@ export function legend(state) {
   const truth = state.hasTruth ? el("span", { class: "key fixed" }, el("i", { class: "line-mark" }), "truth") : null;
   const seeds = data.seeds.length > 1 ? el("label", { class: "seeds" }, "Seeds ",
     el("select", { onchange: (event) => state.setSeed(event.target.value === "all" ? "all" : Number(event.target.value)) },
-      el("option", { value: "all" }, `all ${data.seeds.length}: median, range`),
+      el("option", { value: "all" }, `all ${data.seeds.length}: median, band`),
       ...data.seeds.map((seed) => el("option", { value: seed }, `seed ${seed}`)))) : null;
   document.querySelector("#legend .bar").append(el("div", { class: "keys" }, ...keys, truth ?? ""), seeds ?? "");
   state.listen(() => data.estimators.forEach((name, i) => keys[i].setAttribute("aria-pressed", state.isVisible(name))));

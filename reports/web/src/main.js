@@ -2,16 +2,22 @@
 import "uplot/dist/uPlot.min.css";
 import "./page.css";
 import { unpack } from "./data.js";
+import { comparison } from "./comparison.js";
+import { degeneracy } from "./degeneracy.js";
+import { drift } from "./drift.js";
 import { el, installTooltip } from "./dom.js";
 import { chart, figure, pair } from "./figures.js";
+import { findings } from "./findings.js";
 import { formatNumber } from "./format.js";
 import { contents, legend } from "./legend.js";
 import { mapGallery, overview, pictureNote } from "./pictures.js";
 import { outcome, provenance } from "./record.js";
+import { residuals } from "./residuals.js";
 import { createState } from "./state.js";
 import { FullTable, SummaryTable } from "./tables.js";
 import { applyTheme, themeSwitch } from "./theme.js";
 import { TopView } from "./topview.js";
+import { seedBand } from "./words.js";
 
 applyTheme();
 const data = unpack(JSON.parse(document.getElementById("tarmac-data").textContent));
@@ -20,14 +26,16 @@ const sections = [];
 
 const add = (name, options) => chart(state, name, options)?.element;
 
+const kShort = { comparison: "Comparison", stills: "Scene", phase: "Sweep", residuals: "Residuals", deskew: "Deskew", outcome: "Outcome" };
+
 function section(id, title, ...content) {
   const filled = content.flat().filter(Boolean);
   if (filled.length === 0) return;
   document.getElementById(id).append(el("h2", {}, title), ...filled);
-  sections.push({ id, title });
+  sections.push({ id, title: kShort[id] ?? title });
 }
 
-const manySeeds = data.seeds.length > 1 ? " With several seeds the line is their median and the band their range." : "";
+const manySeeds = seedBand(state);
 
 function summary() {
   const table = new SummaryTable(state);
@@ -44,7 +52,8 @@ function paths() {
   state.listen(() => top.draw());
   section("top", "Paths", state.hasTruth
     ? figure("True and estimated paths from above",
-      "The broad line is where the vehicle really went, a thin coloured one where a method believes it went; the gap between them is the error at that place, after the method's path was laid onto the truth at its first pose.",
+      "The broad line is where the vehicle really went, a thin coloured one where a method believes it went; the gap between them is the error at that place, after the method's path was laid onto the truth at its first pose."
+      + (top.degenerate().some((path) => path.x.length) ? " A red shade marks where the geometry leaves a direction free (see Degeneracy)." : ""),
       top.element)
     : figure("Estimated paths from above",
       "Each line is where a method believes the sensor went, drawn in the method's own frame, which begins at its first sweep; where lines part the methods disagree, and without truth nothing here says which of them is right.",
@@ -55,17 +64,15 @@ function paths() {
 }
 
 function figures() {
-  const drift = add("drift_vs_distance", { band: data.seeds.length === 1 });
-  const along = add("error_vs_distance");
-  section("drift", "Drift", pair(
-    along && figure("Error along the way", `Read from left to right as the vehicle drives: a line that climbs steadily drifts, a step marks the place where something went wrong.${manySeeds}`, along),
-    drift && figure("Drift against distance", `For every stretch of the given length the method's motion is compared with the true one: flat means that errors cancel, a straight slope means that they add up.${data.seeds.length === 1 ? " The band holds 5 to 95 % of the stretches." : manySeeds}`, drift)));
+  section("drift", "Drift", drift(state));
 
   const phase = add("reference_error_by_phase", { log: "linear" });
   const bent = add("deskew_error_by_phase", { log: "linear" });
   section("phase", "Inside the sweep", pair(
     phase && figure("Error by sweep phase", `Left is the first firing of a sweep, right the last, where most methods hold their pose: a line that rises towards the left belongs to a method that does not undo the vehicle's motion while the sensor turns.${manySeeds}`, phase),
     bent && figure("What remains after the sweep's best fit", `The same, after each sweep was moved rigidly to where it fits best: what is left is how far the sweep itself is bent.${manySeeds}`, bent)));
+
+  section("residuals", "Residuals and time", residuals(state));
 
   const deskew = add("deskew_error_vs_time", { sync: "time", bare: true });
   const speed = add("speed_vs_time", { sync: "time", bare: true, height: 110, truth: true, log: "never" });
@@ -74,6 +81,8 @@ function figures() {
     (deskew || speed) && figure("Deskew error beside speed and yaw rate",
       "Peaks above turns and fast stretches below show which motion a method fails to undo; a method that deskews well stays low through all of them.",
       deskew, speed, yaw));
+
+  section("degeneracy", "Degeneracy", degeneracy(state));
 
   const time = add("sweep_time_vs_time", { sync: "time" });
   const iterations = add("iterations_vs_time", { sync: "time" });
@@ -85,6 +94,8 @@ function figures() {
 document.getElementById("theme").append(themeSwitch(() => state.changed("theme")));
 legend(state);
 summary();
+section("comparison", "Compared over seeds", comparison(state));
+section("findings", "Findings", findings(state));
 paths();
 figures();
 section("outcome", "How the runs ended", outcome(state));

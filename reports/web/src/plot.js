@@ -16,8 +16,11 @@ export function wantsLog(lines) {
 }
 
 /**
- * lines: [{name, color (css variable), x, y, low?, high?, width?, dash?}].
- * options: {xLabel, yLabel, sync?, height, log?: "never" | "linear" at first; default: as the lines need, bare?: no label below}
+ * lines: [{name, color (css variable), x, y, low?, high?, width?, dash?, dots?: points without a line}].
+ * options: {xLabel, yLabel, sync?, height, bare?: no label below,
+ *   log?: "never" | "linear" at first | "log" at first | "outside": as setLog says; default: as the lines need,
+ *   range?, logRange?: () => [low, high] of an axis that charts share,
+ *   shades?: () => [{from, to, color}] stretches of x behind the lines}
  */
 export class Chart {
   constructor(options) {
@@ -27,7 +30,7 @@ export class Chart {
     this.readout = el("div", { class: "readout", "aria-live": "off" });
     this.box = el("div", { class: "plot", style: { height: `${options.height}px` } });
     this.reset = el("button", { type: "button", class: "quiet", hidden: true, onclick: () => this.zoom(null) }, "Reset zoom");
-    this.axisButton = options.log === "never" ? null
+    this.axisButton = options.log === "never" || options.log === "outside" ? null
       : el("button", { type: "button", class: "quiet", onclick: () => { this.log = !this.isLog(); this.build(); } });
     this.element = el("div", { class: "chart" },
       el("div", { class: "chart-bar" }, this.readout,
@@ -38,7 +41,19 @@ export class Chart {
   }
 
   isLog() {
-    return this.log ?? (this.options.log === undefined && wantsLog(this.lines));
+    return this.log ?? (this.options.log === "log" || (this.options.log === undefined && wantsLog(this.lines)));
+  }
+
+  /** For charts with log: "outside". */
+  setLog(log) {
+    this.log = log;
+    this.build();
+  }
+
+  /** New axes: other labels, and what was zoomed into is gone. */
+  setLabels(xLabel, yLabel) {
+    Object.assign(this.options, { xLabel, yLabel });
+    this.reset.hidden = true;
   }
 
   setLines(lines) {
@@ -90,7 +105,9 @@ export class Chart {
     for (const line of this.lines) {
       const color = cssColor(line.color);
       const width = line.width ?? 1.6;
-      series.push({ stroke: color, width, dash: line.dash, points: { show: line.x.length < 60, size: 4, fill: color, width: 0 }, spanGaps: false });
+      series.push(line.dots
+        ? { stroke: `${color}99`, width: 0, paths: () => null, points: { show: true, size: 3.5, fill: `${color}80`, width: 0 } }
+        : { stroke: color, width, dash: line.dash, points: { show: !line.dash && line.x.length < 60, size: 4, fill: color, width: 0 }, spanGaps: false });
       if (line.low) {
         const at = series.length;
         for (let k = 0; k < 2; ++k) series.push({ stroke: "transparent", width: 0, points: { show: false } });
@@ -112,10 +129,24 @@ export class Chart {
       scales: { x: { time: false }, y: this.yScale() },
       axes: [this.axis(this.options.bare ? { size: 24 } : { label: [capitalize(xName), xUnit].filter(Boolean).join(", "), size: 34, labelSize: 18 }), this.yAxis()],
       hooks: {
+        drawClear: this.options.shades ? [(plot) => this.drawShades(plot)] : [],
         setCursor: [(plot) => this.showReadout(plot.cursor.left >= 0 ? plot.posToVal(plot.cursor.left, "x") : null)],
         setScale: [(plot, key) => { if (key === "x") this.reset.hidden = this.isWhole(plot); }],
       },
     };
+  }
+
+  drawShades(plot) {
+    const g = plot.ctx;
+    g.save();
+    for (const { from, to, color } of this.options.shades()) {
+      const left = Math.max(plot.valToPos(from, "x", true), plot.bbox.left);
+      const right = Math.min(plot.valToPos(to, "x", true), plot.bbox.left + plot.bbox.width);
+      if (!(right > left)) continue;
+      g.fillStyle = `${cssColor(color)}26`;
+      g.fillRect(left, plot.bbox.top, Math.max(right - left, 1), plot.bbox.height);
+    }
+    g.restore();
   }
 
   axis(extra) {
@@ -140,12 +171,14 @@ export class Chart {
 
   yScale() {
     if (!this.isLog()) {
+      if (this.options.range) return { range: () => this.options.range() };
       return { range: (_, min, max) => {
         const low = Math.min(0, min);
         const margin = 0.06 * (max - low) || 1e-6;
         return [low < 0 ? low - margin : low, max + margin];
       } };
     }
+    if (this.options.logRange) return { distr: 3, range: () => this.options.logRange() };
     return { distr: 3, range: (_, min, max) => (min > 0 ? [min / 1.4, max * 1.4] : [0.1, 10]) };
   }
 

@@ -39,11 +39,94 @@ export function interpolate(series, x) {
   return ys[a] + share * (ys[a + 1] - ys[a]);
 }
 
+/**
+ * The k for which the k-th smallest and k-th largest of n values hold the true median with at least 90 % probability,
+ * whatever the distribution, and that probability; {rank: 0} below five values, where no two of them do.
+ */
+export function medianRank(n) {
+  let below = 0;  // P(Binomial(n, 1/2) < k)
+  let term = 0.5 ** n;
+  let best = { rank: 0, confidence: 0 };
+  for (let k = 1; 2 * k <= n; ++k) {
+    below += term;
+    term *= (n - k + 1) / k;
+    if (1 - 2 * below < 0.9) break;
+    best = { rank: k, confidence: 1 - 2 * below };
+  }
+  return best;
+}
+
+/** Interval that holds the median (medianRank); the range where there are too few values for one. */
+export function medianInterval(values) {
+  const sorted = values.filter(isNumber).sort((a, b) => a - b);
+  if (sorted.length === 0) return null;
+  const k = Math.max(1, medianRank(sorted.length).rank);
+  return [sorted[k - 1], sorted[sorted.length - k]];
+}
+
+/** Lowest and highest of all lines with their bands, with a margin and 0 inside; [0, 1] of nothing. */
+export function extent(lines) {
+  let low = 0;
+  let high = 0;
+  for (const line of lines) {
+    for (const column of [line.y, line.low, line.high]) {
+      for (const value of column ?? []) {
+        if (!isNumber(value)) continue;
+        if (value < low) low = value;
+        if (value > high) high = value;
+      }
+    }
+  }
+  if (low === high) return [0, 1];
+  const margin = 0.06 * (high - low);
+  return [low < 0 ? low - margin : 0, high > 0 ? high + margin : 0];
+}
+
+/** The same for a logarithmic axis: of what lies above 0. */
+export function logExtent(lines) {
+  let low = Infinity;
+  let high = 0;
+  for (const line of lines) {
+    for (const column of [line.y, line.low, line.high]) {
+      for (const value of column ?? []) {
+        if (!isNumber(value) || value <= 0) continue;
+        low = Math.min(low, value);
+        high = Math.max(high, value);
+      }
+    }
+  }
+  return high > 0 ? [low / 1.4, high * 1.4] : [0.1, 10];
+}
+
+/** Where 99 % of the dots are: a few wild sweeps must not press the others onto the axis. */
+export function dotRange(lines) {
+  const values = lines.flatMap((line) => line.y).filter(isNumber).sort((a, b) => a - b);
+  if (values.length === 0) return [0, 1];
+  const low = values[Math.floor(0.005 * (values.length - 1))];
+  const high = values[Math.ceil(0.995 * (values.length - 1))];
+  const margin = 0.08 * (high - low) || 1e-6;
+  return [low - margin, high + margin];
+}
+
+/** x strictly ascending, as charts of points need it: sorted, and equal ones apart by less than a dot shows. */
+export function ascending(x, y) {
+  const order = x.map((_, i) => i).filter((i) => isNumber(x[i]) && isNumber(y[i])).sort((a, b) => x[a] - x[b]);
+  if (order.length === 0) return { x: [], y: [] };
+  const least = 1e-7 * (x[order[order.length - 1]] - x[order[0]] || 1);
+  const out = { x: [], y: [] };
+  for (const i of order) {
+    const last = out.x[out.x.length - 1];
+    out.x.push(last === undefined || x[i] > last ? x[i] : last + least);
+    out.y.push(y[i]);
+  }
+  return out;
+}
+
 function sameGrid(a, b) {
   return a.length === b.length && a.every((value, i) => Math.abs(value - b[i]) <= 1e-6 * Math.max(1, Math.abs(value)));
 }
 
-/** Median with smallest and largest over seeds, on the grid of the longest series. One series comes back as it is. */
+/** Median over seeds with its interval (medianInterval), on the grid of the longest series. One series comes back as it is. */
 export function combine(list) {
   const filled = list.filter((series) => series && series.x.length > 0);
   if (filled.length === 0) return null;
@@ -54,7 +137,7 @@ export function combine(list) {
   const y = [], low = [], high = [];
   for (let i = 0; i < grid.length; ++i) {
     const values = columns.map((column) => column[i]);
-    const between = range(values);
+    const between = medianInterval(values);
     y.push(median(values));
     low.push(between ? between[0] : null);
     high.push(between ? between[1] : null);

@@ -27,7 +27,7 @@ export function gather(runs, metric, estimate) {
   return { rows, values, median: median(values), range: range(values), reason: reason ?? "" };
 }
 
-function metricTip(metric) {
+export function metricTip(metric) {
   if (!metric) return "";
   const better = metric.lower_is_better ? "Lower is better." : "";
   const alignment = metric.alignment && metric.alignment !== "none needed" ? ` Alignment: ${metric.alignment}.` : "";
@@ -59,7 +59,7 @@ function statusCell(runs) {
     el("span", { class: `chip ${failed.length === 0 ? "good" : failed.length === runs.length ? "bad" : "mixed"}`, tabindex: why ? "0" : null, "data-tip": why || null }, text));
 }
 
-function sortButton(label, unit, tip, current, onclick) {
+export function sortButton(label, unit, tip, current, onclick) {
   const arrow = current === null ? "" : current ? " ▲" : " ▼";
   return el("th", { scope: "col", "aria-sort": current === null ? "none" : current ? "ascending" : "descending" },
     el("button", { type: "button", class: "sort", "data-tip": tip || null, onclick }, el("span", {}, label, el("span", { class: "arrow" }, arrow)),
@@ -78,23 +78,28 @@ export function filledColumns(runs, wanted) {
   return { shown, missing };
 }
 
-/** "Path error and step error: n/a, the recording has no truth." One sentence a reason. */
+/** "Path error" -> "path error", but "KITTI rotation" stays. */
+const lowered = (label) => (/^.[A-Z]/.test(label) ? label : label[0].toLowerCase() + label.slice(1));
+
+/** "No path error or step error: the recording has no truth." One sentence a reason. */
 export function whyMissing(missing) {
   const reasons = new Map();
   for (const { label, reason } of missing) {
     const why = reason.replace(/^(n\/a|failed): /, "");
-    reasons.set(why, [...(reasons.get(why) ?? []), label.toLowerCase()]);
+    reasons.set(why, [...(reasons.get(why) ?? []), lowered(label)]);
   }
   return [...reasons].map(([why, labels]) => `No ${labels.length > 1 ? `${labels.slice(0, -1).join(", ")} or ${labels.at(-1)}` : labels[0]}: ${why}.`).join(" ");
 }
 
 export class SummaryTable {
-  constructor(state) {
+  /** `wanted`: columns as [metric, label]; the summary's, with how the runs ended, when nothing else is said. */
+  constructor(state, wanted) {
     this.state = state;
+    this.withStatus = !wanted;
     this.open = new Set();
     this.element = el("div", { class: "table-wrap", tabindex: "0", role: "region", "aria-label": "Summary" });
-    const { shown, missing } = filledColumns(state.data.runs, kSummary);
-    const iterations = shown.findIndex(([metric]) => metric === "iterations_mean");
+    const { shown, missing } = filledColumns(state.data.runs, wanted ?? kSummary);
+    const iterations = wanted ? -1 : shown.findIndex(([metric]) => metric === "iterations_mean");
     if (state.hasTruth && iterations >= 0) shown.splice(iterations, 1);  // there is no room for it, and it is in the table below
     this.columns = shown;
     this.missing = whyMissing(missing);
@@ -108,7 +113,8 @@ export class SummaryTable {
     const rows = this.state.data.estimators.map((name) => {
       const runs = this.state.runs(name);
       return { name, runs, cells: Object.fromEntries(this.columns.map(([metric]) => [metric, gather(runs, metric)])) };
-    }).filter((row) => row.runs.length > 0);
+    }).filter((row) => row.runs.length > 0
+      && (this.withStatus || this.columns.some(([metric]) => row.cells[metric].median !== null)));
     const { column, ascending } = this.sort;
     const key = (row) => (column === "name" ? row.name : column === "status" ? row.runs.filter((r) => r.status !== "ok").length : row.cells[column]?.median);
     const header = (id, label, unit, tip) => sortButton(label, unit, tip, column === id ? ascending : null, () => {
@@ -117,7 +123,7 @@ export class SummaryTable {
     });
     const head = el("tr", {}, header("name", "Estimator", "", "Sort by name"),
       ...this.columns.map(([metric, label]) => header(metric, label, metrics[metric]?.unit, metricTip(metrics[metric]) || metric)),
-      header("status", "Status", "", "Sort by failed runs"));
+      this.withStatus ? header("status", "Status", "", "Sort by failed runs") : null);
     const best = Object.fromEntries(this.columns.map(([metric]) => [metric, this.best(rows, metric)]));
     const body = sortRows(rows, key, ascending).flatMap((row) => this.rowsOf(row, best, rows.length));
     this.element.replaceChildren(el("table", { class: "summary" }, el("thead", {}, head), el("tbody", {}, ...body)));
@@ -142,10 +148,10 @@ export class SummaryTable {
         [...this.element.querySelectorAll(".expand")].find((b) => b.dataset.name === row.name)?.focus();
       }, "data-name": row.name }, open ? "hide runs" : `${row.runs.length} runs`) : null);
     const main = el("tr", { class: this.state.isVisible(row.name) ? "" : "off" }, name,
-      ...this.columns.map(([metric]) => cell(row.cells[metric], best[metric] === row.name, count)), statusCell(row.runs));
+      ...this.columns.map(([metric]) => cell(row.cells[metric], best[metric] === row.name, count)), this.withStatus ? statusCell(row.runs) : null);
     if (!several || !open) return [main];
     const seeds = row.runs.map((run) => el("tr", { class: "seed" }, el("th", { scope: "row" }, `seed ${run.seed}`),
-      ...this.columns.map(([metric]) => cell(gather([run], metric), false, 0)), statusCell([run])));
+      ...this.columns.map(([metric]) => cell(gather([run], metric), false, 0)), this.withStatus ? statusCell([run]) : null));
     return [main, ...seeds];
   }
 }

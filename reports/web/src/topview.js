@@ -62,6 +62,12 @@ export class TopView {
     return { truths, estimates };
   }
 
+  /** Where the geometry leaves a direction free, on the true paths of the chosen seeds. */
+  degenerate() {
+    const seeds = this.state.seed === "all" ? this.state.data.seeds : [this.state.seed];
+    return seeds.map((seed) => this.state.data.truth[String(seed)]?.path_degenerate).filter(Boolean);
+  }
+
   /** Where a sample is drawn: the true place plus the error times the magnification. */
   place(path, i) {
     const [x, y] = [path.x[i], path.y[i]];
@@ -138,6 +144,9 @@ export class TopView {
     this.drawPicture(g);
     const { truths, estimates } = this.paths();
     const onPicture = Boolean(this.image);
+    for (const path of this.degenerate()) {
+      this.stroke(g, path.x.map((x, i) => [x, path.y[i]]), onPicture ? "rgba(240,70,40,0.62)" : "rgba(200,60,30,0.4)", 17);
+    }
     for (const path of truths) {
       const points = path.x.map((x, i) => [x, path.y[i]]);
       this.stroke(g, points, onPicture ? "rgba(20,24,28,0.55)" : "transparent", 6.5);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vector_loop.h"
 #include "sim/lidar/effects/echoes.h"
 
 namespace tarmac::sim::lidar {
@@ -10,6 +11,18 @@ constexpr double normal_quantile_90 = 1.2815515655446004;  // Phi(x) = 0.9: the 
 constexpr double table_step_m = 0.0625;
 // Farther than this from the threshold, chance has no say (probability below 1e-7).
 constexpr float certain = 5.3f;
+
+/// Signal over noise above the threshold; the table's last entry is never interpolated from.
+TARMAC_VECTOR_LOOP void excess_of(std::size_t count, const double* __restrict range_m, const float* __restrict signal,
+                                  const float* __restrict falloff, int last, float steps_per_m, float threshold,
+                                  float* __restrict excess) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = static_cast<float>(range_m[i]) * steps_per_m;
+    const int whole = static_cast<int>(x), k = whole < last ? whole : last;
+    const float low = falloff[k], high = falloff[k + 1];
+    excess[i] = signal[i] * (low + (x - static_cast<float>(k)) * (high - low)) - threshold;
+  }
+}
 
 }  // namespace
 
@@ -29,18 +42,16 @@ double Detection::snr(double signal, double range_m) const {
 }
 
 void Detection::operator()(Echoes& echoes) const {
-  const float per_step = static_cast<float>(1 / range_step_m_);
-  const float threshold = static_cast<float>(threshold_);
+  std::vector<float>& excess = echoes.scratch;
+  excess.resize(echoes.size());
+  excess_of(echoes.size(), echoes.range_m.data(), echoes.signal.data(), falloff_.data(),
+            static_cast<int>(falloff_.size()) - 2, static_cast<float>(1 / range_step_m_),
+            static_cast<float>(threshold_), excess.data());
   for (std::size_t i = 0; i < echoes.size(); ++i) {
-    if (echoes.range_m[i] <= 0) continue;
-    const float x = static_cast<float>(echoes.range_m[i]) * per_step;
-    const std::size_t k = std::min(static_cast<std::size_t>(x), falloff_.size() - 2);
-    const float excess =
-        echoes.signal[i] * (falloff_[k] + (x - static_cast<float>(k)) * (falloff_[k + 1] - falloff_[k])) - threshold;
-    if (excess > certain) continue;
+    if (excess[i] > certain || echoes.range_m[i] <= 0) continue;
     float n = 0;
-    if (excess > -certain) stream_.normals(echoes.first_firing + i, {&n, 1});
-    if (excess + n <= 0) echoes.range_m[i] = 0;
+    if (excess[i] > -certain) stream_.normals(echoes.first_firing + i, {&n, 1});
+    if (excess[i] + n <= 0) echoes.range_m[i] = 0;
   }
 }
 

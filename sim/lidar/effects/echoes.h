@@ -25,7 +25,8 @@ struct Echoes {
 
   std::size_t size() const { return range_m.size(); }
   void resize(std::size_t n);
-  std::vector<float> draws;  ///< scratch for an effect's random numbers
+  std::vector<float> draws;    ///< scratch for an effect's random numbers
+  std::vector<float> scratch;  ///< for whatever else an effect keeps by firing
 };
 
 /// signal = rho_eq(theta) cos(theta), monostatic, from the material (scenes::Material):
@@ -72,7 +73,8 @@ class RangeNoise {
 
  private:
   core::RandomStream stream_;
-  std::vector<double> from_m_, sigma_m_;
+  std::vector<double> from_m_;
+  std::vector<float> sigma_m_;
 };
 
 /// A constant range error of each channel, drawn once a sensor.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/vector_loop.h"
 #include "sim/lidar/effects/echoes.h"
 
 namespace tarmac::sim::lidar {
@@ -9,6 +10,22 @@ namespace {
 
 constexpr float max_roughness_factor = 5;
 constexpr float retro_half_width_rad = static_cast<float>(30 * std::numbers::pi / 180);
+
+/// Diffuse and glossy parts; rows of six coefficients a material.
+TARMAC_VECTOR_LOOP void reflect(std::size_t count, const std::uint16_t* __restrict material,
+                                const float* __restrict cosine, const float* __restrict table,
+                                float* __restrict signal) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const int row = 6 * static_cast<int>(material[i]);
+    const float diffuse = table[row], a = table[row + 1], b = table[row + 2], alpha2 = table[row + 3],
+                glossy = table[row + 4];
+    const float c = cosine[i] > 1e-4f ? cosine[i] : 1e-4f, c2 = c * c, s2 = 1 - c2;
+    const float rough = a + b * s2 / c, held = rough < max_roughness_factor ? rough : max_roughness_factor;
+    const float d = c2 * (alpha2 - 1) + 1, g1 = 2 / (1 + std::sqrt(1 + alpha2 * s2 / c2));
+    const float lobe = glossy * g1 * g1 / (d * d * c2);
+    signal[i] = c * (diffuse * held + (alpha2 > 0 ? lobe : 0.0f));
+  }
+}
 
 }  // namespace
 
@@ -32,20 +49,15 @@ Reflectance::Reflectance(const std::vector<scenes::Material>& materials) {
 }
 
 void Reflectance::operator()(Echoes& echoes) const {
+  static_assert(sizeof(Coefficients) == 6 * sizeof(float));
+  reflect(echoes.size(), echoes.material.data(), echoes.cos_incidence.data(), &materials_.front().diffuse,
+          echoes.signal.data());
   for (std::size_t i = 0; i < echoes.size(); ++i) {
-    const Coefficients& m = materials_[echoes.material[i]];
-    const float c = std::max(echoes.cos_incidence[i], 1e-4f), c2 = c * c, s2 = 1 - c2;
-    float rho = m.diffuse * std::min(m.a + m.b * s2 / c, max_roughness_factor);
-    if (m.alpha2 > 0) {
-      const float d = c2 * (m.alpha2 - 1) + 1;
-      const float g1 = 2 / (1 + std::sqrt(1 + m.alpha2 * s2 / c2));
-      rho += m.glossy * g1 * g1 / (d * d * c2);
-    }
-    if (m.retro > 0) {
-      const float theta = std::acos(std::min(c, 1.0f)) / retro_half_width_rad, theta2 = theta * theta;
-      rho += m.retro * std::exp(-theta2 * theta2);
-    }
-    echoes.signal[i] = rho * c;
+    const float retro = materials_[echoes.material[i]].retro;
+    if (retro <= 0) continue;
+    const float c = std::clamp(echoes.cos_incidence[i], 1e-4f, 1.0f);
+    const float theta = std::acos(c) / retro_half_width_rad, theta2 = theta * theta;
+    echoes.signal[i] += c * retro * std::exp(-theta2 * theta2);
   }
 }
 

@@ -47,7 +47,7 @@ struct Simulated {
   std::vector<core::ImuSample> imu;
   std::vector<truth::PointLabels> labels;
   core::Rig sheet, true_rig;
-  std::string log, manifest;
+  std::string log, manifest, imu_errors;
 
   explicit Simulated(const std::string& faults, int threads = 1) {
     const fs::path recording = folder.path() / "recording", truth = folder.path() / "truth";
@@ -61,6 +61,7 @@ struct Simulated {
     for (std::size_t k = 0; k < chunks.size(); ++k) labels.push_back(truth::labels_from_chunk(chunks.read(k)));
     true_rig = core::rig_from_json(core::read_file(truth / "rig.json"), "rig.json");
     log = core::read_file(truth / "faults.json");
+    imu_errors = core::read_file(truth / "imu0_errors.json");
     manifest = core::read_file(recording / "manifest.json");
   }
 };
@@ -163,6 +164,13 @@ TEST(SimulateFaults, ResolvedBlockReadsBackAsItselfAndAbsenceStaysAbsent) {
     EXPECT_THAT(resolved, testing::HasSubstr("clock_offset_ms: 5"));
     EXPECT_EQ(resolve_faults(ConfigNode(), node), "");
   }
+}
+
+TEST(SimulateImu, RealisedErrorsAreInTheTruthAndNotInTheRecording) {
+  const Simulated run("");
+  EXPECT_THAT(run.imu_errors, testing::HasSubstr("turn_on_bias_rad_s"));
+  EXPECT_THAT(run.manifest, testing::Not(testing::HasSubstr("bias")));
+  EXPECT_THAT(run.manifest, testing::Not(testing::HasSubstr("misalignment")));
 }
 
 TEST(SimulateFaults, BadFaultsAreRefusedBeforeAnythingIsWritten) {

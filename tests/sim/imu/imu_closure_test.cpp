@@ -22,13 +22,12 @@ struct Closure {
 
 enum class Rule { trapezoid, euler };
 
-/// Integrates the samples from the exact start and compares at the end.
-Closure close_loop(const SmoothTrajectory& motion, double rate_hz, Rule rule) {
-  ImuOptions options;
-  options.rate_hz = rate_hz;
-  options.sampling = "point";
-  const auto samples = ideal_imu(motion, options, g, Time(), time_from_s(span_s));
-  const Kinematics start = motion.at(Time());
+/// Integrates the samples, taken `delay` before their stamps, from the exact state at the first and compares at the
+/// end.
+Closure integrate(const SmoothTrajectory& motion, std::vector<ImuSample> samples, Duration delay, Rule rule) {
+  for (ImuSample& s : samples) s.t -= delay;
+  std::erase_if(samples, [&](const ImuSample& s) { return s.t < motion.begin(); });
+  const Kinematics start = motion.at(samples.front().t);
   Eigen::Matrix3d R = start.T_world_body.linear();
   Vector3d p = start.T_world_body.translation(), v = start.v_world;
   const Vector3d down(0, 0, -g);
@@ -48,6 +47,13 @@ Closure close_loop(const SmoothTrajectory& motion, double rate_hz, Rule rule) {
   return {(p - end.translation()).norm(), so3::angle_rad(R.transpose() * end.linear()) * 180 / std::numbers::pi};
 }
 
+Closure close_loop(const SmoothTrajectory& motion, double rate_hz, Rule rule) {
+  ImuOptions options;
+  options.rate_hz = rate_hz;
+  options.sampling = "point";
+  return integrate(motion, ideal_imu(motion, options, g, Time(), time_from_s(span_s)), Duration(0), rule);
+}
+
 TEST(ImuClosure, AMinuteOfTheStandTurnClosesToACentimetreAndConverges) {
   const auto motion = tests::stand_turn(span_s);
   const Closure at_500 = close_loop(*motion, 500, Rule::trapezoid),
@@ -63,6 +69,26 @@ TEST(ImuClosure, AMinuteOfTheStandTurnClosesToACentimetreAndConverges) {
   EXPECT_GT(at_1000.position_m / at_2000.position_m, 3.5);
   EXPECT_GT(at_1000.angle_deg / at_2000.angle_deg, 3.5);
   EXPECT_GT(euler.position_m, 0.01) << "the bound must tell a wrong rule";
+}
+
+TEST(ImuClosure, LowPassedSamplesCloseWithTheDelayOnTheirSheetAndNotWithoutIt) {
+  const auto motion = tests::stand_turn(span_s);
+  ImuOptions options;
+  options.rate_hz = 1000;
+  options.sampling = "low-pass";
+  options.low_pass_hz = 50;
+  const auto samples = ideal_imu(*motion, options, g, Time(), time_from_s(span_s));
+  const Duration delay = imu_sheet(options).delay;
+  const Closure with = integrate(*motion, samples, delay, Rule::trapezoid);
+  const Closure without = integrate(*motion, samples, Duration(0), Rule::trapezoid);
+  const Closure twice = integrate(*motion, samples, 2 * delay, Rule::trapezoid);
+  std::printf("low-pass closure: %.3g m %.3g deg; without its delay %.3g m %.3g deg; with twice %.3g m %.3g deg\n",
+              with.position_m, with.angle_deg, without.position_m, without.angle_deg, twice.position_m,
+              twice.angle_deg);
+  EXPECT_LT(with.position_m, 0.02);
+  EXPECT_LT(with.angle_deg, 0.003);
+  EXPECT_GT(without.position_m, 3 * with.position_m);
+  EXPECT_GT(twice.position_m, 3 * with.position_m);
 }
 
 }  // namespace

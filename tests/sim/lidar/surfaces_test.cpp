@@ -25,7 +25,7 @@ struct WorldPoint {
 };
 
 /// All points of sweeps 0 .. sweeps-1 of `sensor`, each placed by the pose at its own time.
-std::vector<WorldPoint> placed(const char* sensor, scenes::Scene scene, const tests::SteadyMotion& motion,
+std::vector<WorldPoint> placed(const std::string& sensor, scenes::Scene scene, const tests::SteadyMotion& motion,
                                int sweeps = 1) {
   const auto shared_scene = std::make_shared<const scenes::Scene>(std::move(scene));
   const auto tracer = std::make_shared<const raycast::Tracer>(shared_scene, raycast::TracerSettings{});
@@ -45,7 +45,7 @@ std::vector<WorldPoint> placed(const char* sensor, scenes::Scene scene, const te
   return points;
 }
 
-class ExactSurfaces : public testing::TestWithParam<const char*> {};
+class ExactSurfaces : public testing::TestWithParam<std::string> {};
 
 TEST_P(ExactSurfaces, PlaneAHundredMetresOff) {
   scenes::Scene scene = tests::empty_scene();
@@ -142,12 +142,11 @@ TEST_P(ExactSurfaces, TurningAndBrakingVehicle) {
   EXPECT_GT(frozen_m, 0.5);  // where it was at the start, it is not
 }
 
-INSTANTIATE_TEST_SUITE_P(Sensors, ExactSurfaces, testing::Values("ouster-os1-64-gen2", "vlp-16"),
-                         [](const auto& instance) {
-                           std::string name = instance.param;
-                           std::erase(name, '-');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Sensors, ExactSurfaces, testing::ValuesIn(profile_names()), [](const auto& instance) {
+  std::string name = instance.param;
+  std::erase(name, '-');
+  return name;
+});
 
 TEST(SweepSimulator, PlacingAllPointsByOnePoseWouldMissTheSurfaceByDecimetres) {
   // The counter-check of the tests above: they could not pass with the pose frozen at the sweep's begin.
