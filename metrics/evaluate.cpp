@@ -193,7 +193,7 @@ void add_run_figures(const EvaluationInput& input, const EvaluateSettings& setti
   add_effort_rows(known, rows);
   add_cost_series(input.timing, known, input.estimate, t_zero, series);
   add_degeneracy({input.estimate, input.diagnostics, input.sweeps, input.oracle, t_zero}, {.threads = settings.threads},
-                 rows, series, evaluation.degeneracy_csv);
+                 rows, evaluation);
 }
 
 void keep_rows(const RowSet& rows, Evaluation& evaluation) {

@@ -328,23 +328,23 @@ DegeneracyReport degeneracy_report(const DegeneracyInput& input, const Degenerac
                               DegeneracyClass::unknown});
   }
   const double noise_rad = settings.normal_noise_deg * std::numbers::pi / 180;
+  report.method_threshold = DegeneracyRule::pose(noise_rad).degenerate_below;
   for (std::vector<SweepVerdict>* verdicts : {&report.solve, &report.surface})
     classify(*verdicts, DegeneracyRule::pose(noise_rad), DegeneracyRule::difference(noise_rad));
   return report;
 }
 
 void add_degeneracy(const DegeneracyInput& input, const DegeneracySettings& settings, RowSet& rows,
-                    std::vector<Series>& series, std::string& csv) {
+                    Evaluation& evaluation) {
+  std::vector<Series>& series = evaluation.series;
   const DegeneracyReport report = degeneracy_report(input, settings);
   put_rows(input, report, rows);
-  const double noise_rad = settings.normal_noise_deg * std::numbers::pi / 180;
-  const double limit = DegeneracyRule::pose(noise_rad).degenerate_below;
   add_verdict_series("oracle_", report.oracle, series);
   add_weak_series("oracle_", report.oracle, kOracleDegenerateBelow, series);
   if (input.oracle) add_path_degenerate(*input.oracle, report.oracle, series);
   add_verdict_series("", report.solve, series);
   if (!report.solves_with_surface) add_verdict_series("surface_", report.surface, series);
-  add_weak_series("", any_block(report.surface) ? report.surface : report.solve, limit, series);
+  add_weak_series("", any_block(report.surface) ? report.surface : report.solve, report.method_threshold, series);
   Series prior{"prior_share_vs_time", "time [s]", "share of priors along the weakest direction [1]", {}, {}, {}, {}};
   for (std::size_t i = 0; i < report.prior_share.size(); ++i) {
     if (!report.prior_share[i]) continue;
@@ -352,7 +352,10 @@ void add_degeneracy(const DegeneracyInput& input, const DegeneracySettings& sett
     prior.y.push_back(*report.prior_share[i]);
   }
   if (!prior.x.empty()) series.push_back(std::move(prior));
-  if (!report.oracle.empty() || !report.solve.empty()) csv = to_csv(report);
+  if (report.oracle.empty() && report.solve.empty()) return;  // neither truth nor record: nothing was looked for
+  evaluation.degeneracy_csv = to_csv(report);
+  const std::vector<Finding> findings = findings_of(report);
+  evaluation.findings.insert(evaluation.findings.end(), findings.begin(), findings.end());
 }
 
 }  // namespace tarmac::metrics

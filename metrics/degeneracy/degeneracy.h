@@ -54,16 +54,20 @@ struct SweepVerdict {
 
 struct DegeneracyReport {
   std::vector<SweepVerdict> oracle, solve, surface;
-  bool solves_with_surface = false;                ///< `surface` is `solve`
-  std::vector<std::optional<double>> prior_share;  ///< one a sweep of `solve`
+  double method_threshold = kOracleDegenerateBelow;  ///< of the methods' 6-DOF class
+  bool solves_with_surface = false;                  ///< `surface` is `solve`
+  std::vector<std::optional<double>> prior_share;    ///< one a sweep of `solve`
 };
 
 DegeneracyReport degeneracy_report(const DegeneracyInput& input, const DegeneracySettings& settings);
 
-/// degenerate_*, lambda_*, condition_* and degeneracy_* of the registry; the series above; and the report as CSV with
-/// every eigenvalue.
+/// The registry's rows of family `degeneracy`; the series above, findings_of() and to_csv() into `evaluation`.
 void add_degeneracy(const DegeneracyInput& input, const DegeneracySettings& settings, RowSet& rows,
-                    std::vector<Series>& series, std::string& csv);
+                    Evaluation& evaluation);
+
+/// Degenerate stretches of at least 5 sweeps in words, the 10 longest: by the oracle, or, without truth, by the
+/// method's surface residuals. Topic "degeneracy".
+std::vector<Finding> findings_of(const DegeneracyReport& report);
 
 /// A line a sweep and source: classes, condition numbers, all eigenvalues in ascending order (6-DOF, 12-DOF, Schur
 /// complements of mean and difference), and the shares of the weak subspace.

@@ -20,17 +20,16 @@ struct OutAndBack {
   std::vector<SweepDiagnostics> axis_rows;     ///< point-to-point, with surface rows beside
   Rig rig;
 
-  RowSet rows(const std::vector<SweepDiagnostics>* diagnostics, bool with_oracle, std::vector<Series>* series = nullptr,
-              std::string* csv = nullptr, double normal_noise_deg = 0) const {
+  RowSet rows(const std::vector<SweepDiagnostics>* diagnostics, bool with_oracle,
+              Evaluation* evaluation = nullptr) const {
     RowSet made("causal");
-    std::vector<Series> own_series;
-    std::string own_csv;
+    Evaluation own;
     const SweepSource source{static_cast<std::size_t>(kSweeps), [](std::size_t) { return LidarSweep{}; }, rig, 0};
     DiagnosticsSource diagnostics_source;
     if (diagnostics) diagnostics_source = diagnostics_of(*diagnostics);
     add_degeneracy(
         {estimate, diagnostics ? &diagnostics_source : nullptr, source, with_oracle ? &oracle : nullptr, Time{}},
-        {.normal_noise_deg = normal_noise_deg}, made, series ? *series : own_series, csv ? *csv : own_csv);
+        {.normal_noise_deg = 0}, made, evaluation ? *evaluation : own);
     return made;
   }
 };
@@ -148,18 +147,11 @@ TEST(DegeneracyRows, OfARecordingWithoutTruthKeepTheMethodsOwnSide) {
     EXPECT_EQ(report.solve[static_cast<std::size_t>(k)].pose == DegeneracyClass::degenerate, k >= kOut && k < kBack);
 }
 
-const Series* find(const std::vector<Series>& series, const std::string& name) {
-  for (const Series& s : series)
-    if (s.name == name) return &s;
-  return nullptr;
-}
-
 TEST(DegeneracySeries, ShowClassesAndFreeDirectionsOverTime) {
-  std::vector<Series> series;
-  std::string csv;
-  the_run().rows(&the_run().axis_rows, true, &series, &csv);
+  Evaluation evaluation;
+  the_run().rows(&the_run().axis_rows, true, &evaluation);
   const auto value = [&](const char* name, int sweep) {
-    const Series* s = find(series, name);
+    const Series* s = evaluation.find(name);
     EXPECT_TRUE(s) << name;
     return s ? s->y.at(static_cast<std::size_t>(sweep)) : -1;
   };
@@ -174,16 +166,46 @@ TEST(DegeneracySeries, ShowClassesAndFreeDirectionsOverTime) {
       EXPECT_NEAR(value((std::string(prefix) + "weak_" + held + "_vs_time").c_str(), kOut + 3), 0, 1e-3) << held;
   }
   EXPECT_LT(value("degeneracy_class_vs_time", kOut), 2);  // point-to-point
-  EXPECT_EQ(find(series, "path_degenerate")->x.size(), static_cast<std::size_t>(kBack - kOut));
-  EXPECT_FALSE(find(series, "prior_share_vs_time"));
+  EXPECT_EQ(evaluation.find("path_degenerate")->x.size(), static_cast<std::size_t>(kBack - kOut));
+  EXPECT_FALSE(evaluation.find("prior_share_vs_time"));
   // One line a sweep and source, each with as many fields as the header.
   std::size_t lines = 0;
-  std::istringstream text(csv);
+  std::istringstream text(evaluation.degeneracy_csv);
   std::string line, header;
   std::getline(text, header);
   for (; std::getline(text, line); ++lines)
     EXPECT_EQ(std::count(line.begin(), line.end(), ','), std::count(header.begin(), header.end(), ','));
   EXPECT_EQ(lines, 3u * kSweeps);
+}
+
+TEST(DegeneracyFindings, TellWhereWhatIsFreeAndWhoNoticed) {
+  Evaluation evaluation;
+  the_run().rows(&the_run().axis_rows, true, &evaluation);
+  ASSERT_EQ(evaluation.findings.size(), 1u);
+  const Finding& finding = evaluation.findings[0];
+  EXPECT_EQ(finding.topic, "degeneracy");
+  EXPECT_EQ(finding.verdict, Finding::Verdict::found);
+  // Sweeps 10 to 21 end at 1.1 s and 2.2 s.
+  EXPECT_EQ(finding.words,
+            "By exact normals the geometry does not hold along-track + cross-track + yaw from 1.1 s to 2.2 s.");
+  ASSERT_EQ(finding.evidence.size(), 4u);
+  EXPECT_EQ(finding.evidence[0].value, kBack - kOut);
+  EXPECT_EQ(finding.evidence[2].value, 0);    // its point-to-point residuals
+  EXPECT_EQ(finding.evidence[3].value, 100);  // its surface residuals
+}
+
+TEST(DegeneracyFindings, WithoutTruthAreTheMethodsOwnOrNone) {
+  const OutAndBack& run = the_run();
+  DegeneracyReport report;
+  EXPECT_EQ(findings_of(report)[0].verdict, Finding::Verdict::cannot_be_told);
+  const DiagnosticsSource diagnostics = diagnostics_of(run.surface_rows);
+  const SweepSource source{static_cast<std::size_t>(kSweeps), {}, run.rig, 0};
+  report = degeneracy_report({run.estimate, &diagnostics, source, &run.oracle, Time{}}, {.normal_noise_deg = 0});
+  report.oracle.clear();
+  ASSERT_EQ(findings_of(report).size(), 1u);
+  EXPECT_EQ(findings_of(report)[0].verdict, Finding::Verdict::found);
+  report.surface.resize(kOut);
+  EXPECT_EQ(findings_of(report)[0].verdict, Finding::Verdict::nothing_found);
 }
 
 TEST(DegeneracyRows, AreTheSameAtAnyNumberOfThreads) {
