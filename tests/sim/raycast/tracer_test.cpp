@@ -274,7 +274,7 @@ TEST(PackedTiles, MeetWhatTheTracerMeetsAgainAndAgain) {
     packed.intersect();
     EXPECT_EQ(packed.hits(), met);
   }
-  EXPECT_GT(met, 20u);
+  EXPECT_GT(met, 10u);  // some of the fan, not all of it
   EXPECT_LT(met, 101u);
 }
 
