@@ -222,11 +222,29 @@ Finding sum(const std::vector<Finding>& findings, const Evidence& e) {
   return f;
 }
 
+/// A wrong scale, unit or step of stamps, counted from the sweep's begin, also moves the middle of the sweep and bends
+/// it: what looks like an offset or a missing acceleration beside it may be nothing but that.
+void set_aside(std::vector<Finding>& findings) {
+  std::string first;
+  for (const Finding& f : findings)
+    if (f.verdict == Verdict::found && (f.topic == "stamp-scale" || f.topic == "stamp-quantisation"))
+      first += (first.empty() ? "" : " and ") + f.topic;
+  if (first.empty()) return;
+  for (Finding& f : findings) {
+    if (f.topic != "clock-offset" && f.topic != "missing-acceleration") continue;
+    if (f.verdict != Verdict::found) continue;
+    f.verdict = Verdict::cannot_be_told;
+    f.words = fmt::format(
+        "The figures say so, but {} by itself moves and bends the motion inside the sweep: mend that first.", first);
+  }
+}
+
 }  // namespace
 
 std::vector<Finding> diagnose(const Evidence& evidence) {
   std::vector<Finding> findings{stamp_scale(evidence),  quantisation(evidence), missing_acceleration(evidence),
                                 clock_offset(evidence), time_lag(evidence),     residual_trend(evidence)};
+  set_aside(findings);
   findings.push_back(sum(findings, evidence));
   return findings;
 }

@@ -17,10 +17,10 @@ using Matrix19 = Eigen::Matrix<double, 19, 19>;
 using Matrix18 = Eigen::Matrix<double, 18, 18>;
 using Vector18 = Eigen::Matrix<double, 18, 1>;
 
-constexpr int kSaw = 18;                 // the last column
-constexpr std::size_t kFewestRows = 60;  // three a parameter
+constexpr int kSaw = 18;                          // the last column
+constexpr std::size_t kFewestRows = 60;           // three a parameter
 constexpr double kHuber = 1.345, kTukey = 4.685;  // both 95 % efficient for Gaussian residuals
-constexpr double kPrior = 1;             // [1/m^2, 1/rad^2]: what the rows leave free stays at 0 +- 1 m, 1 rad
+constexpr double kPrior = 1;                      // [1/m^2, 1/rad^2]: what the rows leave free stays at 0 +- 1 m, 1 rad
 
 /// A row as the fit wants it.
 struct Equation {
@@ -76,31 +76,34 @@ Normal normal_of(const std::vector<Equation>& equations) {
   return n;
 }
 
-Vector18 solve_shape(const Normal& n) {
-  const Matrix18 H = n.H.topLeftCorner<18, 18>() + kPrior * Matrix18::Identity();
-  return H.ldlt().solve(n.g.head<18>());
+/// Without the saw-tooth its column stays at 0.
+Vector19 solve(const Normal& n, bool with_saw) {
+  Vector19 x = Vector19::Zero();
+  if (with_saw) return (n.H + kPrior * Matrix19::Identity()).ldlt().solve(n.g);
+  x.head<18>() = (n.H.topLeftCorner<18, 18>() + kPrior * Matrix18::Identity()).ldlt().solve(n.g.head<18>());
+  return x;
 }
 
-double residual(const Equation& e, const Vector18& x) {
-  return e.r - e.a.head<18>().dot(x);
+double residual(const Equation& e, const Vector19& x) {
+  return e.r - e.a.dot(x);
 }
 
 /// Robust standard deviation about the shape, of those that `use` takes; 0 when there are none.
 template <class Use>
-double robust_sigma(const std::vector<Equation>& equations, const Vector18& x, const Use& use) {
+double robust_sigma(const std::vector<Equation>& equations, const Vector19& x, const Use& use) {
   std::vector<double> off;
   for (const Equation& e : equations)
     if (use(e)) off.push_back(std::abs(residual(e, x)));
   return off.empty() ? 0 : std::max(1e-6, 1.4826 * quantile(std::move(off), 0.5));
 }
 
-Spread spread(const std::vector<Equation>& equations, const Vector18& x) {
+Spread spread(const std::vector<Equation>& equations, const Vector19& x) {
   return {robust_sigma(equations, x, [](const Equation& e) { return e.level; }),
           robust_sigma(equations, x, [](const Equation& e) { return !e.level; })};
 }
 
 /// Huber's weight, which has one minimum, until the shape is about right; then Tukey's, which ignores outliers.
-void weigh(std::vector<Equation>& equations, const Vector18& x, bool tukey) {
+void weigh(std::vector<Equation>& equations, const Vector19& x, bool tukey) {
   const Spread sigma = spread(equations, x);
   for (Equation& e : equations) {
     const double s = sigma.of(e), u = std::abs(residual(e, x)) / s, v = u / kTukey;
@@ -112,32 +115,32 @@ void weigh(std::vector<Equation>& equations, const Vector18& x, bool tukey) {
   }
 }
 
-void keep_shape(const Normal& n, const Vector18& x, SweepShape& shape) {
+void keep_shape(const Normal& n, const Vector19& x, SweepShape& shape) {
   const Matrix18 H = n.H.topLeftCorner<18, 18>();
   const Matrix6 H0 = H.topLeftCorner<6, 6>() + kPrior * Matrix6::Identity();
   const Eigen::Matrix<double, 6, 12> coupling = H.topRightCorner<6, 12>();
-  shape.value = x.tail<12>();
+  shape.value = x.segment<12>(6);
   shape.information = H.bottomRightCorner<12, 12>() - coupling.transpose() * H0.ldlt().solve(coupling);
 }
 
-void keep_saw(const Normal& n, const Vector18& x, SawTooth& saw) {
+void keep_saw(const Normal& n, SawTooth& saw) {
   const Matrix18 H = n.H.topLeftCorner<18, 18>() + kPrior * Matrix18::Identity();
   const Vector18 coupling = n.H.block<18, 1>(0, kSaw);
   saw.information = n.H(kSaw, kSaw) - coupling.dot(H.ldlt().solve(coupling));
-  saw.score = n.g[kSaw] - coupling.dot(x);
+  saw.score = n.g[kSaw] - coupling.dot(solve(n, false).head<18>());
 }
 
 void fit(std::vector<Equation>& equations, bool with_saw, SweepResiduals& sweep) {
-  Vector18 x = Vector18::Zero();
+  Vector19 x = Vector19::Zero();
   Normal n;
   for (int round = 0; round < 6; ++round) {
     weigh(equations, x, round >= 4);
     n = normal_of(equations);
-    x = solve_shape(n);
+    x = solve(n, with_saw);
   }
   sweep.sigma_m = robust_sigma(equations, x, [](const Equation&) { return true; });
   keep_shape(n, x, sweep.shape);
-  if (with_saw) keep_saw(n, x, sweep.saw);
+  if (with_saw) keep_saw(n, sweep.saw);
   sweep.fitted = true;
 }
 

@@ -143,7 +143,8 @@ bool VoxelMap::add(const Eigen::Vector3d& p, std::int32_t birth) {
   } else if (counts_[static_cast<std::size_t>(b)] == max_points_ || too_near(b, p)) {
     return false;
   }
-  births_[static_cast<std::size_t>(b) * capacity_ + static_cast<std::size_t>(counts_[static_cast<std::size_t>(b)])] = birth;
+  births_[static_cast<std::size_t>(b) * capacity_ + static_cast<std::size_t>(counts_[static_cast<std::size_t>(b)])] =
+      birth;
   double* x = block(b) + counts_[static_cast<std::size_t>(b)]++;
   x[0] = p.x();
   x[capacity_] = p.y();

@@ -31,7 +31,7 @@ class KissOdometry {
   struct Step {
     IcpResult icp;
     std::vector<SurfacePoint> surface;  ///< if asked for
-    SweepMotion motion;  ///< by which the points were placed
+    SweepMotion motion;                 ///< by which the points were placed
     double sigma_m = 0;
     std::vector<std::pair<std::string, double>> stages_ms;
   };

@@ -68,8 +68,7 @@ TEST_F(KissSurface, RowsCarryTimePointAndTheJacobianByThePoseAtTheirOwnTime) {
     const core::ResidualRow& row = record_.surface[k];
     EXPECT_EQ(row.point, i);
     EXPECT_EQ(row.t_ns, sweep_.t_ns[i]);
-    const SE3 T =
-        step_.icp.T_map_lidar_linearised * step_.motion.T_end_point(sweep_.t_ns[i]) * T_body_lidar_.inverse();
+    const SE3 T = step_.icp.T_map_lidar_linearised * step_.motion.T_end_point(sweep_.t_ns[i]) * T_body_lidar_.inverse();
     const Vector3d p_body = T_body_lidar_ * sweep_.point(i), sensor = (T * T_body_lidar_).translation();
     const Vector3d n = plane.normal.dot(sensor - T * p_body) > 0 ? plane.normal : Vector3d(-plane.normal);
     const auto residual = [&](const Vector6& xi) {
