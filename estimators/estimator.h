@@ -14,6 +14,9 @@
 
 namespace tarmac::estimators {
 
+/// The stage of `stages_ms` in which a method writes its diagnostics, on one thread.
+inline constexpr const char* kRecordStage = "record";
+
 /// What an estimator says of one sweep.
 struct SweepOutcome {
   core::SweepResult result;
@@ -43,9 +46,9 @@ struct EstimatorContext {
 enum class Needs : std::uint8_t { lidar = 1, imu = 2, lidar_and_imu = 3 };
 
 struct EstimatorEntry {
-  const char* name;     ///< kebab-case
+  const char* name;  ///< kebab-case
   const char* summary;
-  const char* source;   ///< the publication
+  const char* source;  ///< the publication
   Needs needs;
   std::unique_ptr<Estimator> (*make)(const core::ConfigNode& options, const EstimatorContext& context);
   std::vector<core::OptionDescription> (*describe)();

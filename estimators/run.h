@@ -24,7 +24,8 @@ struct RunResult {
 /// sensors are absent ends with RunStatus::not_initialised; one that throws, or returns a pose that is not finite or a
 /// motion that overlaps the last one's, ends with RunStatus::failed and keeps what it gave until then. Of several
 /// LiDARs or IMUs the first is used. Bad options throw InputError; whatever `progress` throws ends the run.
-/// A sweep's time includes that of the IMU samples since the one before, and leaves out reading, decoding and the sink.
+/// A sweep's time includes that of the IMU samples since the one before, and leaves out reading, decoding, the sink and
+/// the stage kRecordStage: what an instrument costs is not the method's.
 RunResult run_estimator(const core::Recording& recording, const EstimatorEntry& entry, const core::ConfigNode& options,
                         const EstimatorContext& context, const core::Progress& progress,
                         const DiagnosticsSink& sink = {});

@@ -75,7 +75,7 @@ SweepOutcome CtIcp::add(const core::LidarSweep& sweep) {
   outcome.note = note_of(sweep, step);
   if (level_ != core::DiagnosticsLevel::none) {
     outcome.diagnostics = record_of(sweep, odometry_, step, level_);
-    stopwatch.lap("record");
+    stopwatch.lap(kRecordStage);
   }
   outcome.diagnostics.index = sweep.index;
   outcome.motion = {std::move(step.motion)};

@@ -151,7 +151,7 @@ SweepOutcome outcome_of(const core::LidarSweep& sweep, const KissOdometry& odome
   outcome.motion = placed_by(sweep, step.motion, step.icp.T_map_lidar, T_lidar_body);
   if (level != core::DiagnosticsLevel::none) {
     outcome.diagnostics = record_of(sweep, odometry, step, T_lidar_body, level);
-    stopwatch.lap("record");
+    stopwatch.lap(kRecordStage);
   }
   outcome.diagnostics.index = sweep.index;
   return outcome;
