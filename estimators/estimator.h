@@ -14,8 +14,9 @@
 
 namespace tarmac::estimators {
 
-/// The stage of `stages_ms` in which a method writes its diagnostics, on one thread.
+/// The stages of `stages_ms` that serve the diagnostics alone: writing them, and looking for surfaces to write.
 inline constexpr const char* kRecordStage = "record";
+inline constexpr const char* kSurfacesStage = "surfaces";
 
 /// What an estimator says of one sweep.
 struct SweepOutcome {

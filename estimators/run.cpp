@@ -168,14 +168,14 @@ class Runner {
     result.estimate.sweeps.push_back(dropped);
   }
 
-  /// What the method spent on its record is the instrument's cost, not the method's. (One thread writes the record, so
-  /// that its wall time is its processor time.)
+  /// What the method spent on its record is the instrument's cost, not the method's.
   void leave_out_the_record(const SweepOutcome& outcome) {
-    for (const auto& [stage, ms] : outcome.stages_ms) {
-      if (stage != kRecordStage) continue;
-      wall_ms_ = std::max(0.0, wall_ms_ - ms);
-      cpu_ms_ = std::max(0.0, cpu_ms_ - ms);
-    }
+    double record_ms = 0;
+    for (const auto& [stage, ms] : outcome.stages_ms)
+      if (stage == kRecordStage || stage == kSurfacesStage) record_ms += ms;
+    const double share = wall_ms_ > 0 ? std::clamp(1 - record_ms / wall_ms_, 0.0, 1.0) : 1;
+    wall_ms_ *= share;
+    cpu_ms_ *= share;
   }
 
   void keep(SweepOutcome& outcome, RunResult& result) {

@@ -25,7 +25,8 @@ struct RunResult {
 /// motion that overlaps the last one's, ends with RunStatus::failed and keeps what it gave until then. Of several
 /// LiDARs or IMUs the first is used. Bad options throw InputError; whatever `progress` throws ends the run.
 /// A sweep's time includes that of the IMU samples since the one before, and leaves out reading, decoding, the sink and
-/// the stage kRecordStage: what an instrument costs is not the method's.
+/// the stages that serve the diagnostics alone: what an instrument costs is not the method's. (Of the processor time
+/// their share is taken to be that of the wall time.)
 RunResult run_estimator(const core::Recording& recording, const EstimatorEntry& entry, const core::ConfigNode& options,
                         const EstimatorContext& context, const core::Progress& progress,
                         const DiagnosticsSink& sink = {});

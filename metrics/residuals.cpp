@@ -123,7 +123,10 @@ Evidence examine_residuals(const EvaluationInput& input, const EvaluateSettings&
   for (const SweepResiduals& sweep : sweeps)
     if (sweep.fitted) spreads.push_back(sweep.sigma_m);
   evidence.spread_m = spreads.empty() ? 0 : quantile(spreads, 0.5);
-  evidence.trend = add_phase_series(sweeps, {}, series);
+  // Few sweeps give a picture, but no spread from sweep to sweep to judge it by.
+  constexpr std::size_t kLeastSweeps = 20;
+  const PhaseTrend trend = add_phase_series(sweeps, {}, series);
+  if (sweeps.size() >= kLeastSweeps) evidence.trend = trend;
   const SlopeFit fit = fit_slopes(sweeps, {});
   if (fit.span_s > 0) {
     rows.put("residual_spread_m", evidence.spread_m);

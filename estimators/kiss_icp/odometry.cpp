@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include "estimators/blocks/stopwatch.h"
+#include "estimators/estimator.h"
 
 namespace tarmac::estimators {
 
@@ -38,7 +39,7 @@ KissOdometry::Step KissOdometry::add(const core::LidarSweep& sweep, const SweepM
 
   if (surfaces_) {
     step.surface = surfaces_at(step.icp.T_map_lidar_linearised);
-    stopwatch.lap("surfaces");
+    stopwatch.lap(kSurfacesStage);
   }
   threshold_.update(T_predicted.inverse() * step.icp.T_map_lidar);
   D_ = core::se3::normalized(T_map_lidar_.inverse() * step.icp.T_map_lidar);

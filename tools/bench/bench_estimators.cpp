@@ -52,7 +52,7 @@ using SweepCost = std::map<std::int64_t, double>;  // best CPU ms by sweep
 double whole_cpu_ms(const core::SweepTiming& sweep) {
   double ms = sweep.cpu_ms;
   for (const auto& [stage, stage_ms] : sweep.stages_ms)
-    if (stage == "record") ms += stage_ms;
+    if (stage == "record" || stage == "surfaces") ms += stage_ms;
   return ms;
 }
 
