@@ -13,7 +13,8 @@ using Verdict = Finding::Verdict;
 
 constexpr double kSigmas = 4;
 constexpr double kLeastScale = 0.03;
-constexpr double kLeastShare = 0.3;  // of a stamp's step, of the acceleration, of a sweep's lag
+constexpr double kLeastScaleModelled = 0.3;  // where the motion inside the sweep is the method's model, not measured
+constexpr double kLeastShare = 0.3;          // of a stamp's step, of the acceleration, of a sweep's lag
 constexpr double kLeastOffset_s = 1e-3;
 constexpr double kLeastTrend_m = 5e-3;
 constexpr double kTellingOffset_s = 2e-3;  // a worse sigma leaves a millisecond untold
@@ -78,12 +79,18 @@ Finding stamp_scale(const Evidence& e) {
   f.evidence.insert(f.evidence.begin(),
                     {number("motion overdone by, from translation", e.slopes->scale_translation, 100, "%"),
                      number("motion overdone by, from rotation", e.slopes->scale_rotation, 100, "%")});
-  const bool of_sweep = beyond(times(k, factor), kLeastScale);
-  f.verdict = of_sweep ? Verdict::found : Verdict::nothing_found;
-  f.words = of_sweep
-                ? scale_words(k.value, factor * k.value, e)
-                : "No part of the motion is left over or overdone. A method that brings each sweep's stamps to one "
-                  "span by itself could not show a wrong scale or unit.";
+  if (beyond(times(k, factor), e.slopes->inside ? kLeastScale : kLeastScaleModelled)) {
+    f.verdict = Verdict::found;
+    f.words = scale_words(k.value, factor * k.value, e);
+  } else if (e.slopes->inside) {
+    f.verdict = Verdict::nothing_found;
+    f.words = "No part of the motion is left over or overdone.";
+  } else {
+    f.words =
+        "The motion inside a sweep is the method's own model, spread over the sweep's stamps: a wrong scale or unit "
+        "goes "
+        "into it unseen. Stamps in reverse, or no motion at all, would show, and do not.";
+  }
   return f;
 }
 

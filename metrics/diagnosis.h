@@ -29,8 +29,9 @@ struct Evidence {
 /// missing-acceleration, clock-offset, time-lag, residual-trend, timing (the sum of it: noise only, or not).
 ///
 /// Something is found when it is at least 4 standard deviations (bootstrap over sweeps) and at least as large as to
-/// matter: 3 % of the motion, 0.3 of a stamp's step, 0.3 of the acceleration or of a sweep's lag, 1 ms, 5 mm. The
-/// rate of false alarms that this gives is measured (README.md).
+/// matter: 3 % of the motion (30 % where the motion inside the sweep is the
+/// method's model and not measured: smaller shares are the model's), 0.3 of a stamp's step, 0.3 of the acceleration or
+/// of a sweep's lag, 1 ms, 5 mm. The rate of false alarms that this gives is measured (README.md).
 std::vector<Finding> diagnose(const Evidence& evidence);
 
 }  // namespace tarmac::metrics

@@ -84,7 +84,7 @@ struct Samples {
 };
 
 std::vector<SweepOutcome> run(Estimator& estimator, const Drive& drive, const core::Rig& sheet, const Samples& setup) {
-  const std::vector<Vector3d> world = tests::landmarks(45, 3, 0.9);
+  const std::vector<Vector3d> world = tests::landmarks(28, 3, 0.9);
   const tests::Motion lidar = [&](double t) -> SE3 { return drive.T_world_body(t) * sheet.lidars[0].T_body_lidar; };
   std::vector<SweepOutcome> outcomes;
   int next = 1;
@@ -218,7 +218,7 @@ TEST(KissIcpImu, StampsFarOutsideTheSweepAreHeldAtTheEndsOfWhatIsKnown) {
   const core::Rig sheet = rig();
   KissIcpImu estimator({}, context(sheet));
   run(estimator, cruise(), sheet, {.seconds = 2.5});
-  const std::vector<Vector3d> world = tests::landmarks(45, 3, 0.9);
+  const std::vector<Vector3d> world = tests::landmarks(28, 3, 0.9);
   core::LidarSweep sweep = tests::sweep_at(25, world, tests::still());
   for (std::int32_t& t_ns : sweep.t_ns) t_ns = t_ns > 50'000'000 ? 2'000'000'000 : -2'000'000'000;
   const SweepOutcome outcome = estimator.add(sweep);

@@ -146,6 +146,7 @@ TEST(ResidualTiming, TheMotionOfTheSweepBeforeLagsByOneSweep) {
   EXPECT_THAT(found.words, HasSubstr("sweep before"));
   EXPECT_NEAR(evidence.slopes->lag_rotation_s.value, TimingWorld::kPeriod, 0.02);
   EXPECT_FALSE(evidence.slopes->inside);
+  EXPECT_EQ(finding(evidence, "stamp-scale").verdict, Verdict::cannot_be_told) << "its model takes a scale up unseen";
   EXPECT_EQ(finding(evidence, "clock-offset").verdict, Verdict::cannot_be_told);
   EXPECT_THAT(finding(evidence, "clock-offset").words, HasSubstr("no plot over the point's time can show it"));
 }
