@@ -85,10 +85,11 @@ Finding stamp_scale(const Evidence& e) {
   } else if (e.slopes->inside) {
     f.verdict = Verdict::nothing_found;
     f.words = "No part of the motion is left over or overdone.";
+  } else if (e.held) {
+    f.words = "The method holds one pose over a sweep: the motion inside it is not undone, whatever the stamps say.";
   } else {
     f.words =
-        "The motion inside a sweep is the method's own model, spread over the sweep's stamps: a wrong scale or unit "
-        "goes "
+        "The motion inside a sweep is the method's own model, spread over its stamps: a wrong scale or unit goes "
         "into it unseen. Stamps in reverse, or no motion at all, would show, and do not.";
   }
   return f;
