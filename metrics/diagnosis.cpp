@@ -17,7 +17,8 @@ constexpr double kLeastScaleModelled = 0.3;  // where the motion inside the swee
 constexpr double kLeastShare = 0.3;          // of a stamp's step, of the acceleration, of a sweep's lag
 constexpr double kLeastOffset_s = 1e-3;
 constexpr double kLeastTrend_m = 5e-3;
-constexpr double kTellingOffset_s = 2e-3;  // a worse sigma leaves a millisecond untold
+constexpr double kLeastSpan = 0.05, kMostSpan = 3;  // of stamps, in sweeps: few returns make less, no jitter makes more
+constexpr double kTellingOffset_s = 2e-3;           // a worse sigma leaves a millisecond untold
 
 bool beyond(const Bootstrapped& x, double least) {
   return std::abs(x.value) >= least && std::abs(x.z()) >= kSigmas;
@@ -73,12 +74,20 @@ std::string scale_words(double k, double period_k, const Evidence& e) {
 Finding stamp_scale(const Evidence& e) {
   Finding f{"stamp-scale", Verdict::cannot_be_told, kNoResiduals, {}};
   f.evidence.push_back(number("stamps' span over the sweep's duration", e.stamps.span_share, "1"));
+  // No residual is needed to see a wrong unit, and a method that brings stamps to one span has none to show.
+  if (e.stamps.span_share > 0 && (e.stamps.span_share < kLeastSpan || e.stamps.span_share > kMostSpan)) {
+    f.verdict = Verdict::found;
+    f.words =
+        fmt::format("Stamps cover {:.3g} times the sweep's duration: they are in a wrong unit.", e.stamps.span_share);
+  }
   if (!e.slopes) return f;
+  const bool wrong_unit = f.verdict == Verdict::found;
   const Bootstrapped k = combined(e.slopes->scale_translation, e.slopes->scale_rotation);
   const double factor = e.slopes->span_s / (e.period_s > 0 ? e.period_s : 1);
   f.evidence.insert(f.evidence.begin(),
                     {number("motion overdone by, from translation", e.slopes->scale_translation, 100, "%"),
                      number("motion overdone by, from rotation", e.slopes->scale_rotation, 100, "%")});
+  if (wrong_unit) return f;
   if (beyond(times(k, factor), e.slopes->inside ? kLeastScale : kLeastScaleModelled)) {
     f.verdict = Verdict::found;
     f.words = scale_words(k.value, factor * k.value, e);

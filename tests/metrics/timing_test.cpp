@@ -165,6 +165,21 @@ TEST(ResidualTiming, AConstantTwistThatFitsItsOwnSweepBends) {
   EXPECT_LT(std::abs(evidence.slopes->lag_rotation_s.value), 0.01);
 }
 
+TEST(ResidualTiming, AWrongUnitShowsInTheStampsAlone) {
+  Evidence evidence;  // of a method without residuals
+  const auto scale = [&] { return diagnose(evidence).front(); };
+  for (const auto& [span, verdict] : {std::pair{1e-3, Verdict::found},
+                                      {1e3, Verdict::found},
+                                      {1.0, Verdict::cannot_be_told},
+                                      {0.2, Verdict::cannot_be_told}}) {
+    evidence.stamps.span_share = span;
+    EXPECT_EQ(scale().topic, "stamp-scale");
+    EXPECT_EQ(scale().verdict, verdict) << span;
+  }
+  evidence.stamps.span_share = 1e-3;
+  EXPECT_THAT(scale().words, HasSubstr("wrong unit"));
+}
+
 TEST(ResidualTiming, OnePoseASweepLeavesTheWholeMotion) {
   const TimingWorld world(9);
   Method method{.placed_by = [&world](int k, double) { return world.truth(world.begin_s(k)); },
