@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "metrics/statistics.h"
 
@@ -100,6 +101,7 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
   PairedComparison c;
   c.pairs = logs.size();
   c.a_lower = static_cast<std::size_t>(std::count_if(logs.begin(), logs.end(), [](double d) { return d < 0; }));
+  c.b_lower = static_cast<std::size_t>(std::count_if(logs.begin(), logs.end(), [](double d) { return d > 0; }));
   c.low = 0;
   c.high = std::numeric_limits<double>::infinity();
   if (logs.empty()) return c;
@@ -118,6 +120,18 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
   else
     c.p = centre == 0 ? 1 : 0;  // the same ratio on every seed
   judge(significance, c);
+  return c;
+}
+
+PairedComparison turned_around(const PairedComparison& comparison) {
+  PairedComparison c = comparison;
+  std::swap(c.a, c.b);
+  std::swap(c.a_lower, c.b_lower);
+  c.ratio = 1 / comparison.ratio;
+  c.low = 1 / comparison.high;  // of "cannot be told", 0 and infinity, this makes the same again
+  c.high = 1 / comparison.low;
+  if (comparison.difference == Difference::lower) c.difference = Difference::higher;
+  if (comparison.difference == Difference::higher) c.difference = Difference::lower;
   return c;
 }
 

@@ -26,6 +26,7 @@ struct PairedComparison {
   std::string metric;
   std::size_t pairs = 0;
   std::size_t a_lower = 0;   ///< seeds on which a's value is lower
+  std::size_t b_lower = 0;   ///< and b's: ties are neither's
   double ratio = 1;          ///< of a to b, geometric mean
   double low = 0, high = 0;  ///< 95 % interval of the ratio; 0 and infinity when too few
   double p = 1;              ///< two-sided, of the hypothesis ratio = 1
@@ -35,6 +36,9 @@ struct PairedComparison {
 /// `a` and `b` in pairs, one a seed; a pair with a value that is not above 0 (or not finite) is left out. Throws
 /// std::invalid_argument when they differ in length. `significance`: below this p a difference is called one.
 PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, double significance = 0.05);
+
+/// The same comparison told of b against a.
+PairedComparison turned_around(const PairedComparison& comparison);
 
 /// Every pair of estimators by one metric's headline row (causal, or final for a batch method); runs that are not ok
 /// are left out. With more than one pair of estimators `significance` is shared out by Holm's rule, which holds the

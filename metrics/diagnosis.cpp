@@ -52,15 +52,9 @@ Bootstrapped combined(const Bootstrapped& a, const Bootstrapped& b) {
 const char* const kNoResiduals =
     "The method recorded no point-to-surface residual (run it with --diagnostics full), or too few sweeps have any.";
 
-/// k in words. Beyond the stamps' scale itself there are three values with a name.
+/// k in words. Beyond the stamps' scale itself there are two values with a name.
 std::string scale_words(double k, double period_k, const Evidence& e) {
   if (period_k > -1.4 && period_k < -0.5) {
-    if (e.stamps.span_share < 1.0 / 3 || e.stamps.span_share > 3)
-      return fmt::format(
-          "Motion inside a sweep is not undone, and stamps cover {:.3g} times the sweep's duration: they are in a "
-          "wrong "
-          "unit.",
-          e.stamps.span_share);
     return e.held ? "Motion inside a sweep is not undone: the method holds one pose over it."
                   : "Motion inside a sweep is not undone, as if the stamps did not reach the method.";
   }
@@ -74,20 +68,20 @@ std::string scale_words(double k, double period_k, const Evidence& e) {
 Finding stamp_scale(const Evidence& e) {
   Finding f{"stamp-scale", Verdict::cannot_be_told, kNoResiduals, {}};
   f.evidence.push_back(number("stamps' span over the sweep's duration", e.stamps.span_share, "1"));
+  if (e.slopes)
+    f.evidence.insert(f.evidence.begin(),
+                      {number("motion overdone by, from translation", e.slopes->scale_translation, 100, "%"),
+                       number("motion overdone by, from rotation", e.slopes->scale_rotation, 100, "%")});
   // No residual is needed to see a wrong unit, and a method that brings stamps to one span has none to show.
   if (e.stamps.span_share > 0 && (e.stamps.span_share < kLeastSpan || e.stamps.span_share > kMostSpan)) {
     f.verdict = Verdict::found;
     f.words =
         fmt::format("Stamps cover {:.3g} times the sweep's duration: they are in a wrong unit.", e.stamps.span_share);
+    return f;
   }
   if (!e.slopes) return f;
-  const bool wrong_unit = f.verdict == Verdict::found;
   const Bootstrapped k = combined(e.slopes->scale_translation, e.slopes->scale_rotation);
   const double factor = e.slopes->span_s / (e.period_s > 0 ? e.period_s : 1);
-  f.evidence.insert(f.evidence.begin(),
-                    {number("motion overdone by, from translation", e.slopes->scale_translation, 100, "%"),
-                     number("motion overdone by, from rotation", e.slopes->scale_rotation, 100, "%")});
-  if (wrong_unit) return f;
   if (beyond(times(k, factor), e.slopes->inside ? kLeastScale : kLeastScaleModelled)) {
     f.verdict = Verdict::found;
     f.words = scale_words(k.value, factor * k.value, e);

@@ -1,7 +1,5 @@
 #include "reports/page_comparisons.h"
 
-#include <algorithm>
-
 namespace tarmac::reports {
 
 namespace {
@@ -21,19 +19,11 @@ std::vector<const metrics::Evaluation*> all_of(const std::vector<ReportRun>& run
   return all;
 }
 
-/// Every pair in both orders, each with its own count of seeds: compare_all goes by the order of first appearance.
-std::vector<PairedComparison> both_ways(std::vector<const metrics::Evaluation*> all, const std::string& metric) {
-  std::vector<PairedComparison> list = metrics::compare_all(all, metric);
-  std::vector<std::string> names;
-  for (const auto* evaluation : all) {
-    if (std::find(names.begin(), names.end(), evaluation->estimator) == names.end()) {
-      names.push_back(evaluation->estimator);
-    }
-  }
-  const auto place = [&](const metrics::Evaluation* e) { return std::find(names.begin(), names.end(), e->estimator); };
-  std::stable_sort(all.begin(), all.end(), [&](const auto* x, const auto* y) { return place(x) > place(y); });
-  const std::vector<PairedComparison> turned = metrics::compare_all(all, metric);
-  list.insert(list.end(), turned.begin(), turned.end());
+/// Every pair in both orders: the reader chooses which estimator the others stand against.
+std::vector<PairedComparison> both_ways(const std::vector<const metrics::Evaluation*>& all, const std::string& metric) {
+  const std::vector<PairedComparison> pairs = metrics::compare_all(all, metric);
+  std::vector<PairedComparison> list = pairs;
+  for (const PairedComparison& c : pairs) list.push_back(metrics::turned_around(c));
   return list;
 }
 

@@ -57,6 +57,22 @@ TEST(ComparePaired, TwoSeedsSayNothingAndZeroesAreLeftOut) {
   EXPECT_THROW(compare_paired({1}, {1, 2}), std::invalid_argument);
 }
 
+TEST(ComparePaired, TurnedAroundIsWhatTheOtherOrderGives) {
+  const std::vector<double> a = {0.9, 1.8, 2.73, 3.5, 5}, b = {1, 2, 3, 4, 5};  // a tie at last
+  for (const std::size_t n : {std::size_t{5}, std::size_t{4}, std::size_t{2}}) {
+    const std::vector<double> x(a.begin(), a.begin() + static_cast<long>(n)),
+        y(b.begin(), b.begin() + static_cast<long>(n));
+    const PairedComparison turned = turned_around(compare_paired(x, y)), other = compare_paired(y, x);
+    EXPECT_EQ(turned.pairs, other.pairs);
+    EXPECT_EQ(turned.a_lower, other.a_lower);
+    EXPECT_EQ(turned.b_lower, other.b_lower);
+    EXPECT_EQ(turned.difference, other.difference);
+    EXPECT_NEAR(turned.ratio, other.ratio, 1e-12);
+    EXPECT_NEAR(turned.low, other.low, 1e-12);
+    EXPECT_NEAR(1 / turned.high, 1 / other.high, 1e-12);
+  }
+}
+
 /// Two methods alike: over many experiments of 5 seeds, 5 % are called different by chance.
 TEST(ComparePaired, CallsEqualMethodsDifferentAsOftenAsItSays) {
   constexpr int kExperiments = 4000;
