@@ -27,6 +27,19 @@ struct SweepOutcome {
   std::string note;  ///< what was unusual about the sweep, for the log; empty: nothing
 };
 
+/// What a method that is not ready yet says of a sweep.
+inline SweepOutcome initialising_outcome(const core::LidarSweep& sweep) {
+  SweepOutcome outcome;
+  outcome.diagnostics.index = sweep.index;
+  outcome.diagnostics.points_in = static_cast<std::int32_t>(sweep.size());
+  outcome.result = {.index = sweep.index,
+                    .begin = sweep.begin,
+                    .end = sweep.end,
+                    .reference = sweep.end,
+                    .status = core::SweepStatus::initialising};
+  return outcome;
+}
+
 /// Complete once constructed; two instances never influence each other. Sweeps come in order, checked: finite points,
 /// strictly later than the one before. An empty sweep comes as an empty sweep.
 class Estimator {

@@ -82,14 +82,7 @@ bool DeadReckoning::in_hole(const core::LidarSweep& sweep) const {
 }
 
 SweepOutcome DeadReckoning::add(const core::LidarSweep& sweep) {
-  SweepOutcome outcome;
-  outcome.diagnostics.index = sweep.index;
-  outcome.diagnostics.points_in = static_cast<std::int32_t>(sweep.size());
-  outcome.result = {.index = sweep.index,
-                    .begin = sweep.begin,
-                    .end = sweep.end,
-                    .reference = sweep.end,
-                    .status = core::SweepStatus::initialising};
+  SweepOutcome outcome = initialising_outcome(sweep);
   if (!covers(sweep)) return outcome;
   outcome.result.status = in_hole(sweep) ? core::SweepStatus::lost : core::SweepStatus::ok;
   outcome.motion.push_back(motion_over(sweep));

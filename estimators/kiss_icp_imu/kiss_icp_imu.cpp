@@ -43,15 +43,7 @@ void KissIcpImu::add(const core::ImuSample& sample) {
 
 SweepOutcome KissIcpImu::add(const core::LidarSweep& sweep) {
   if (path_ && path_->state().t <= sweep.begin) return register_sweep(sweep, !odometry_.map().empty());
-  SweepOutcome outcome;
-  outcome.diagnostics.index = sweep.index;
-  outcome.diagnostics.points_in = static_cast<std::int32_t>(sweep.size());
-  outcome.result = {.index = sweep.index,
-                    .begin = sweep.begin,
-                    .end = sweep.end,
-                    .reference = sweep.end,
-                    .status = core::SweepStatus::initialising};
-  return outcome;
+  return initialising_outcome(sweep);
 }
 
 SweepOutcome KissIcpImu::register_sweep(const core::LidarSweep& sweep, bool has_map) {
