@@ -25,6 +25,7 @@ struct Arguments {
   DescribeArguments describe;
   TransferArguments transfer;
   BenchArguments bench;
+  SweepArguments sweep;
   std::string list_kind;
   std::function<int()> chosen;
 };
@@ -113,6 +114,8 @@ void add_commands(CLI::App& app, Arguments& a) {
                         [&a] { return bench_command(a.bench, a.common); });
   bench->add_option("benches", a.bench.benches, "sim, estimators, metrics (default: all)");
 
+  add_sweep_command(app, a);
+
   for (const bool importing : {true, false}) {
     CLI::App* transfer = importing ? add(app, a, "import", "make a recording (or a TUM file) from another format",
                                          [&a] { return import_command(a.transfer, a.common); })
@@ -127,6 +130,32 @@ void add_commands(CLI::App& app, Arguments& a) {
     if (!importing)
       transfer->add_option("-e,--estimator", a.transfer.estimator, "whose trajectory (default: the truth's)");
   }
+}
+
+void add_sweep_command(CLI::App& app, Arguments& a) {
+  CLI::App* sweep = add(app, a, "sweep", "run the cells of a sweep file into a store",
+                        [&a] { return sweep_command(a.sweep, a.common); });
+  sweep->add_option("sweep", a.sweep.sweep, "sweep file, or its name")->required();
+  sweep->add_option("-o,--out", a.sweep.out, "folder of the store");
+  sweep->add_option("--jobs", a.common.jobs, "cells at once, one thread each (default: all cores)")
+      ->check(CLI::Range(1, 1024));
+  sweep->add_flag("--resume", a.sweep.resume, "go on with a store that is there: run what is not finished");
+  sweep->add_flag("--rerun-failed", a.sweep.rerun_failed, "the same, and what failed once more");
+  sweep->add_flag("--dry-run", a.sweep.dry_run, "list the cells with estimates of time and disk; run nothing");
+  sweep->add_option("--shard", a.sweep.shard, "I/N: the I-th of N parts; `tarmac merge` makes one store of them");
+  sweep->add_option("--set", a.sweep.sets, "set a field in all blocks: duration_s=5 (repeatable)")
+      ->allow_extra_args(false);
+  sweep->add_option("--config", a.sweep.config, "YAML file with an `estimators:` block");
+  sweep->add_option("--cache", a.sweep.cache, "folder of recordings, which several sweeps may share (default: in DIR)");
+  sweep
+      ->add_option("--cache-limit-gb", a.sweep.cache_limit_gb,
+                   "room that recordings may take; 0 = no limit (default 20)")
+      ->check(CLI::NonNegativeNumber);
+  sweep
+      ->add_option("--estimator-program", a.sweep.estimator_program,
+                   "another build's tarmac-estimate: its estimators, this build's simulator and metrics")
+      ->check(CLI::ExistingFile);
+  sweep->add_flag("--fast", a.sweep.fast, "lift the pinned instruction set of the ray tracer");
 }
 
 bool is_command(const CLI::App& app, const std::string& word) {
