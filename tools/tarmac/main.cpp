@@ -63,6 +63,32 @@ void add_estimator_options(CLI::App* command, std::string& estimators, std::stri
       ->check(CLI::IsMember({"none", "system", "full"}));
 }
 
+void add_sweep_command(CLI::App& app, Arguments& a) {
+  CLI::App* sweep = add(app, a, "sweep", "run the cells of a sweep file into a store",
+                        [&a] { return sweep_command(a.sweep, a.common); });
+  sweep->add_option("sweep", a.sweep.sweep, "sweep file, or its name")->required();
+  sweep->add_option("-o,--out", a.sweep.out, "folder of the store");
+  sweep->add_option("--jobs", a.common.jobs, "cells at once, one thread each (default: all cores)")
+      ->check(CLI::Range(1, 1024));
+  sweep->add_flag("--resume", a.sweep.resume, "go on with a store that is there: run what is not finished");
+  sweep->add_flag("--rerun-failed", a.sweep.rerun_failed, "the same, and what failed once more");
+  sweep->add_flag("--dry-run", a.sweep.dry_run, "list the cells with estimates of time and disk; run nothing");
+  sweep->add_option("--shard", a.sweep.shard, "I/N: the I-th of N parts; `tarmac merge` makes one store of them");
+  sweep->add_option("--set", a.sweep.sets, "set a field in all blocks: duration_s=5 (repeatable)")
+      ->allow_extra_args(false);
+  sweep->add_option("--config", a.sweep.config, "YAML file with an `estimators:` block");
+  sweep->add_option("--cache", a.sweep.cache, "folder of recordings, which several sweeps may share (default: in DIR)");
+  sweep
+      ->add_option("--cache-limit-gb", a.sweep.cache_limit_gb,
+                   "room that recordings may take; 0 = no limit (default 20)")
+      ->check(CLI::NonNegativeNumber);
+  sweep
+      ->add_option("--estimator-program", a.sweep.estimator_program,
+                   "another build's tarmac-estimate: its estimators, this build's simulator and metrics")
+      ->check(CLI::ExistingFile);
+  sweep->add_flag("--fast", a.sweep.fast, "lift the pinned instruction set of the ray tracer");
+}
+
 void add_commands(CLI::App& app, Arguments& a) {
   CLI::App* run = add(app, a, "run", "simulate a scenario, run estimators, evaluate them and write the report",
                       [&a] { return run_command(a.scenario, a.common); });
@@ -130,32 +156,6 @@ void add_commands(CLI::App& app, Arguments& a) {
     if (!importing)
       transfer->add_option("-e,--estimator", a.transfer.estimator, "whose trajectory (default: the truth's)");
   }
-}
-
-void add_sweep_command(CLI::App& app, Arguments& a) {
-  CLI::App* sweep = add(app, a, "sweep", "run the cells of a sweep file into a store",
-                        [&a] { return sweep_command(a.sweep, a.common); });
-  sweep->add_option("sweep", a.sweep.sweep, "sweep file, or its name")->required();
-  sweep->add_option("-o,--out", a.sweep.out, "folder of the store");
-  sweep->add_option("--jobs", a.common.jobs, "cells at once, one thread each (default: all cores)")
-      ->check(CLI::Range(1, 1024));
-  sweep->add_flag("--resume", a.sweep.resume, "go on with a store that is there: run what is not finished");
-  sweep->add_flag("--rerun-failed", a.sweep.rerun_failed, "the same, and what failed once more");
-  sweep->add_flag("--dry-run", a.sweep.dry_run, "list the cells with estimates of time and disk; run nothing");
-  sweep->add_option("--shard", a.sweep.shard, "I/N: the I-th of N parts; `tarmac merge` makes one store of them");
-  sweep->add_option("--set", a.sweep.sets, "set a field in all blocks: duration_s=5 (repeatable)")
-      ->allow_extra_args(false);
-  sweep->add_option("--config", a.sweep.config, "YAML file with an `estimators:` block");
-  sweep->add_option("--cache", a.sweep.cache, "folder of recordings, which several sweeps may share (default: in DIR)");
-  sweep
-      ->add_option("--cache-limit-gb", a.sweep.cache_limit_gb,
-                   "room that recordings may take; 0 = no limit (default 20)")
-      ->check(CLI::NonNegativeNumber);
-  sweep
-      ->add_option("--estimator-program", a.sweep.estimator_program,
-                   "another build's tarmac-estimate: its estimators, this build's simulator and metrics")
-      ->check(CLI::ExistingFile);
-  sweep->add_flag("--fast", a.sweep.fast, "lift the pinned instruction set of the ray tracer");
 }
 
 bool is_command(const CLI::App& app, const std::string& word) {
