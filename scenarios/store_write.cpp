@@ -190,19 +190,6 @@ void Store::release(const std::string& key) {
     throw std::logic_error(fmt::format("Store::release: cell {} is not claimed by this process", key));
 }
 
-std::int64_t Store::State::metric_name(const MetricValue& metric) {
-  const auto [entry, added] =
-      metric_names.try_emplace({metric.metric, metric.estimate, metric.unit, metric.deterministic}, 0);
-  if (!added) return entry->second;
-  const int deterministic = metric.deterministic ? 1 : 0;
-  db->run("insert or ignore into metric_names(metric, estimate, unit, deterministic) values(?, ?, ?, ?)",
-          {metric.metric, metric.estimate, metric.unit, deterministic});
-  entry->second =
-      db->integer("select id from metric_names where metric = ? and estimate = ? and unit = ? and deterministic = ?",
-                  {metric.metric, metric.estimate, metric.unit, deterministic});
-  return entry->second;
-}
-
 void Store::finish(const std::string& key, const CellOutcome& outcome, std::span<const MetricValue> metrics) {
   State& s = *state_;
   const std::lock_guard guard(s.mutex);
@@ -212,13 +199,7 @@ void Store::finish(const std::string& key, const CellOutcome& outcome, std::span
     const std::int64_t cell =
         s.db->integer("select id from cells join claims on cell = id where key = ? and run = ?", {key, s.run});
     if (cell == 0) throw std::logic_error(fmt::format("Store::finish: cell {} is not claimed by this process", key));
-    s.db->run("insert into outcomes values(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-              {cell, outcome.status, outcome.message, outcome.recording_hash, outcome.wall_s, outcome.cpu_s,
-               outcome.peak_memory_mb, outcome.overhead_s, outcome.folder, outcome.command, s.run, now_text(),
-               metrics.size()});
-    for (const MetricValue& m : metrics)
-      s.db->run("insert into metric_values values(?, ?, ?, ?, ?, ?)",
-                {s.metric_name(m), cell, m.value, m.ci_low, m.ci_high, m.status});
+    insert_outcome(*s.db, s.metric_names, s.run, cell, outcome, metrics);
     s.db->run("delete from claims where cell = ?", {cell});
     transaction.commit();
   } catch (...) {
