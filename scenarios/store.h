@@ -84,6 +84,8 @@ class Store {
   void release(const std::string& key);
   /// Records a claimed cell's outcome and metrics, in one transaction.
   void finish(const std::string& key, const CellOutcome& outcome, std::span<const MetricValue> metrics);
+  /// The same of many, in one transaction: for results that come in bulk. Cells that are pending are claimed by it.
+  void finish(std::span<const CellResult> results);
   /// Cells that are pending, in order of insertion.
   std::vector<std::string> pending() const;
 

@@ -51,12 +51,10 @@ Conditions conditions(const ResultFilter& filter) {
   return all;
 }
 
-constexpr const char* kCellColumns =
-    "c.id, c.key, c.world, c.block, c.scenario, c.case_name, c.seed, c.estimator, "
-    "exists (select 1 from parameters p where p.cell = c.id)";
+constexpr const char* kCellColumns = "c.id, c.key, c.world, c.block, c.scenario, c.case_name, c.seed, c.estimator";
 
-/// Reads kCellColumns; parameters are read for themselves, most cells of a sweep have some.
-Cell read_cell(Database& db, const Statement& row) {
+/// Reads kCellColumns.
+Cell read_cell(const Statement& row) {
   Cell cell;
   cell.key = row.text(1);
   cell.world = row.text(2);
@@ -65,10 +63,6 @@ Cell read_cell(Database& db, const Statement& row) {
   cell.case_name = row.text(5);
   cell.seed = static_cast<std::uint64_t>(row.integer(6));
   cell.estimator = row.text(7);
-  if (row.integer(8) == 0) return cell;
-  Statement& parameters =
-      db.cached("select path, value from parameters where cell = ? order by position").with({row.integer(0)});
-  while (parameters.step()) cell.parameters.emplace_back(parameters.text(0), parameters.text(1));
   return cell;
 }
 
@@ -102,7 +96,7 @@ std::vector<Found> find_cells(Database& db, const ResultFilter& filter) {
                              kCellColumns, kOutcomeColumns, where.sql()));
   where.bind(rows);
   std::vector<Found> found;
-  while (rows.step()) found.push_back({rows.integer(0), {read_cell(db, rows), read_outcome(rows, 9), {}}});
+  while (rows.step()) found.push_back({rows.integer(0), {read_cell(rows), read_outcome(rows, 8), {}}});
   return found;
 }
 
@@ -129,38 +123,48 @@ std::vector<MetricName> metric_names(Database& db, const std::vector<std::string
   return names;
 }
 
-void add_value(CellResult& to, const MetricName& name, const Statement& row) {
-  MetricValue& metric = to.metrics.emplace_back(name.form);
-  metric.value = row.optional_real(1);
-  metric.ci_low = row.optional_real(2);
-  metric.ci_high = row.optional_real(3);
-  metric.status = row.text(4);
+/// Gives each found cell its rows of a table whose last bound column and first read one are the cell. `found` is in
+/// order of id.
+void join_rows(Database& db, const char* of_one, const char* of_all, const std::vector<Bound>& bound,
+               std::vector<Found>& found, const std::function<void(CellResult&, const Statement&)>& add) {
+  const auto bind = [&](Statement& statement) {
+    for (std::size_t i = 0; i < bound.size(); ++i) statement.bind(static_cast<int>(i) + 1, bound[i]);
+  };
+  if (found.size() * kFewCells < static_cast<std::size_t>(db.integer("select count(*) from cells"))) {
+    Statement& rows = db.cached(of_one);
+    bind(rows);
+    for (Found& cell : found) {
+      rows.bind(static_cast<int>(bound.size()) + 1, cell.id);
+      while (rows.step()) add(cell.result, rows);
+    }
+    return;
+  }
+  Statement& rows = db.cached(of_all);
+  bind(rows);
+  auto next = found.begin();
+  while (rows.step()) {
+    while (next != found.end() && next->id < rows.integer(0)) ++next;
+    if (next != found.end() && next->id == rows.integer(0)) add(next->result, rows);
+  }
 }
 
-constexpr const char* kOneValue =
-    "select cell, value, ci_low, ci_high, status from metric_values where metric = ? and cell = ?";
-constexpr const char* kAllValues =
-    "select cell, value, ci_low, ci_high, status from metric_values where metric = ? "
-    "order by cell";
+void load_parameters(Database& db, std::vector<Found>& found) {
+  join_rows(db, "select cell, path, value from parameters where cell = ? order by position",
+            "select cell, path, value from parameters order by cell, position", {}, found,
+            [](CellResult& to, const Statement& row) { to.cell.parameters.emplace_back(row.text(1), row.text(2)); });
+}
 
-/// `found` in order of id.
 void load_metrics(Database& db, const std::vector<MetricName>& names, std::vector<Found>& found) {
-  const bool few = found.size() * kFewCells < static_cast<std::size_t>(db.integer("select count(*) from outcomes"));
   for (const MetricName& name : names) {
-    if (few) {
-      for (Found& cell : found) {
-        Statement& row = db.cached(kOneValue).with({name.id, cell.id});
-        if (row.step()) add_value(cell.result, name, row);
-        row.reset();
-      }
-      continue;
-    }
-    Statement& rows = db.cached(kAllValues).with({name.id});
-    auto next = found.begin();
-    while (rows.step()) {
-      while (next != found.end() && next->id < rows.integer(0)) ++next;
-      if (next != found.end() && next->id == rows.integer(0)) add_value(next->result, name, rows);
-    }
+    join_rows(db, "select cell, value, ci_low, ci_high, status from metric_values where metric = ? and cell = ?",
+              "select cell, value, ci_low, ci_high, status from metric_values where metric = ? order by cell",
+              {name.id}, found, [&](CellResult& to, const Statement& row) {
+                MetricValue& metric = to.metrics.emplace_back(name.form);
+                metric.value = row.optional_real(1);
+                metric.ci_low = row.optional_real(2);
+                metric.ci_high = row.optional_real(3);
+                metric.status = row.text(4);
+              });
   }
 }
 
@@ -170,8 +174,11 @@ auto order_of(const Cell& cell) {
 
 std::vector<Cell> cells_where(Database& db, const char* condition) {
   Statement rows = db.prepare(fmt::format("select {} from cells c where {} order by id", kCellColumns, condition));
+  std::vector<Found> found;
+  while (rows.step()) found.push_back({rows.integer(0), {read_cell(rows), {}, {}}});
+  load_parameters(db, found);
   std::vector<Cell> cells;
-  while (rows.step()) cells.push_back(read_cell(db, rows));
+  for (Found& one : found) cells.push_back(std::move(one.result.cell));
   return cells;
 }
 
@@ -223,6 +230,7 @@ std::vector<Cell> read_unfinished(Database& db) {
 
 std::vector<CellResult> read_results(Database& db, const ResultFilter& filter) {
   std::vector<Found> found = find_cells(db, filter);
+  load_parameters(db, found);
   load_metrics(db, metric_names(db, filter.metrics), found);
   std::vector<std::size_t> order(found.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
