@@ -10,22 +10,7 @@
 #include "scenarios/store_state.h"
 
 namespace tarmac::scenarios {
-namespace {
 namespace fs = std::filesystem;
-
-std::string meta(Database& db, const char* name) {
-  Statement& statement = db.cached("select value from meta where name = ?").with({name});
-  if (!statement.step())
-    throw core::InputError(
-        fmt::format("{}: the store does not say its {}: it is damaged; run the sweep again into a "
-                    "new folder",
-                    db.file().string(), name));
-  std::string value = statement.text(0);
-  statement.reset();
-  return value;
-}
-
-}  // namespace
 
 Store::Store() : state_(std::make_unique<State>()) {}
 Store::Store(Store&&) noexcept = default;
@@ -64,7 +49,7 @@ Store Store::open(const fs::path& folder, Access access) {
   s.folder = folder;
   s.opened_by = ::getpid();
   s.db = open_database(folder, access);
-  s.identity = {meta(*s.db, "sweep"), meta(*s.db, "plan_hash"), meta(*s.db, "build")};
+  s.identity = read_identity(*s.db);
   return store;
 }
 

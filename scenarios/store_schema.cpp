@@ -10,9 +10,9 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <limits>
 
 #include "core/error.h"
+#include "scenarios/store_rows.h"
 
 namespace tarmac::scenarios {
 namespace {
@@ -162,6 +162,18 @@ void check_version(Database& db, const fs::path& folder, Store::Access access, c
   migrate(db, version, folder, schema);
 }
 
+std::string meta(Database& db, const char* name) {
+  Statement& statement = db.cached("select value from meta where name = ?").with({name});
+  if (!statement.step())
+    throw core::InputError(
+        fmt::format("{}: the store does not say its {}: it is damaged; run the sweep again into a "
+                    "new folder",
+                    db.file().string(), name));
+  std::string value = statement.text(0);
+  statement.reset();
+  return value;
+}
+
 void sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -190,18 +202,6 @@ std::string now_text() {
   const auto now = std::chrono::time_point_cast<std::chrono::milliseconds>(std::chrono::system_clock::now());
   const auto ms = now.time_since_epoch().count() % 1000;
   return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(now)), ms);
-}
-
-void insert_cell(Database& db, const Cell& cell) {
-  if (cell.seed > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
-    throw core::InputError(fmt::format("seed {}: must be below 2^63", cell.seed));
-  db.run("insert into cells(key, world, block, scenario, case_name, seed, estimator) values(?, ?, ?, ?, ?, ?, ?)",
-         {cell.key, cell.world, cell.block, cell.scenario, cell.case_name, static_cast<std::int64_t>(cell.seed),
-          cell.estimator});
-  const std::int64_t id = db.last_id();
-  std::int64_t position = 0;
-  for (const auto& [path, value] : cell.parameters)
-    db.run("insert into parameters values(?, ?, ?, ?)", {id, position++, path, value});
 }
 
 void build_store(const fs::path& file, const StoreIdentity& identity, std::span<const Cell> cells) {
@@ -239,6 +239,10 @@ std::unique_ptr<Database> open_database(const fs::path& folder, Store::Access ac
   check_version(*db, folder, access, schema);
   check_whole(*db);
   return db;
+}
+
+StoreIdentity read_identity(Database& db) {
+  return {meta(db, "sweep"), meta(db, "plan_hash"), meta(db, "build")};
 }
 
 }  // namespace tarmac::scenarios

@@ -38,7 +38,8 @@ void place_store(const std::filesystem::path& built, const std::filesystem::path
 std::unique_ptr<Database> open_database(const std::filesystem::path& folder, Store::Access access,
                                         const Schema& schema = current_schema());
 
-void insert_cell(Database& db, const Cell& cell);
+StoreIdentity read_identity(Database& db);
+
 std::string now_text();  ///< UTC, "2026-03-01T12:00:00.000Z"
 
 }  // namespace tarmac::scenarios

@@ -1,12 +1,11 @@
 /// What stands behind Store. Private to scenarios/.
 #pragma once
 
-#include <map>
 #include <mutex>
-#include <tuple>
 
 #include "scenarios/sqlite.h"
 #include "scenarios/store.h"
+#include "scenarios/store_rows.h"
 #include "scenarios/writer_lock.h"
 
 namespace tarmac::scenarios {
@@ -21,13 +20,14 @@ struct Store::State {
   // After start():
   std::unique_ptr<WriterLock> lock;
   std::int64_t run = 0;
-  /// Rows of metric_names: metric, estimate, unit, deterministic.
-  std::map<std::tuple<std::string, std::string, std::string, bool>, std::int64_t> metric_names;
+  MetricNames metric_names;
 
   std::filesystem::path work() const { return folder / "work"; }
   /// Throws std::logic_error before start().
   void require_started() const;
-  std::int64_t metric_name(const MetricValue& metric);
+  /// Inside a transaction.
+  bool claim(const std::string& key);
+  void finish(const std::string& key, const CellOutcome& outcome, std::span<const MetricValue> metrics);
   void end_run();
 };
 
