@@ -86,7 +86,6 @@ NonInferiority test_non_inferiority(const std::vector<double>& now, const std::v
     r.ci_low = std::exp(d.mean - half_of_interval);
     r.ci_high = std::exp(d.mean + half_of_interval);
     r.p = p_of(d.n, d.mean - threshold, d.error);
-    r.minimum_detectable = minimum_detectable_change(d.n, d.sd, rule);
   }
   r.verdict = verdict_of(r, upper, threshold, rule.alpha);
   return r;

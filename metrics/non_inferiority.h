@@ -37,8 +37,6 @@ struct NonInferiority {
   /// Two-sided 95 % interval of the ratio; 0 and infinity where it cannot be told.
   double ci_low = 0, ci_high = std::numeric_limits<double>::infinity();
   double p = 1;
-  /// Worsening that would have failed with the wanted power, as a share: 0.05 = 5 %. Infinity below two pairs.
-  double minimum_detectable = std::numeric_limits<double>::infinity();
   NonInferiorityVerdict verdict = NonInferiorityVerdict::inconclusive;
 };
 
