@@ -80,6 +80,22 @@ struct TransferArguments {
 int import_command(const TransferArguments& arguments, const CommonArguments& common);
 int export_command(const TransferArguments& arguments, const CommonArguments& common);
 
+struct GateArguments {
+  std::string folder;  ///< a sweep's
+  std::string gate;    ///< file, or its name
+  std::string junit, markdown;
+  std::string link;  ///< what the Markdown points to for more
+};
+/// Returns 1 when a row failed.
+int gate_command(const GateArguments& arguments, const CommonArguments& common);
+struct BaselineArguments {
+  std::vector<std::string> folders;
+  std::string out;
+  std::string gate;  ///< whose metrics to keep; "" = the headline metrics
+  bool allow_incomplete = false;
+};
+int baseline_update_command(const BaselineArguments& arguments, const CommonArguments& common);
+
 struct BenchArguments {
   std::vector<std::string> benches;  ///< sim, estimators, metrics; empty = all
 };

@@ -26,6 +26,8 @@ struct Arguments {
   TransferArguments transfer;
   BenchArguments bench;
   SweepArguments sweep;
+  GateArguments gate;
+  BaselineArguments baseline;
   std::string list_kind;
   std::function<int()> chosen;
 };
@@ -89,7 +91,28 @@ void add_sweep_command(CLI::App& app, Arguments& a) {
   sweep->add_flag("--fast", a.sweep.fast, "lift the pinned instruction set of the ray tracer");
 }
 
+void add_gate_commands(CLI::App& app, Arguments& a) {
+  CLI::App* gate = add(app, a, "gate", "hold a sweep's results to a gate file; exit code 1 when a row fails",
+                       [&a] { return gate_command(a.gate, a.common); });
+  gate->add_option("folder", a.gate.folder, "folder of a sweep")->required();
+  gate->add_option("--gate", a.gate.gate, "gate file, or its name")->required();
+  gate->add_option("--junit", a.gate.junit, "write JUnit XML");
+  gate->add_option("--markdown", a.gate.markdown, "write Markdown for a pull request");
+  gate->add_option("--link", a.gate.link, "address of the whole report, for the Markdown");
+
+  CLI::App* baseline = app.add_subcommand("baseline", "what gates hold results to");
+  baseline->require_subcommand(1);
+  CLI::App* update = add(*baseline, a, "update", "write a baseline from sweeps' results, and say what changes",
+                         [&a] { return baseline_update_command(a.baseline, a.common); });
+  update->add_option("folders", a.baseline.folders, "folders of sweeps")->required();
+  update->add_option("-o,--out", a.baseline.out, "baseline file")->required();
+  update->add_option("--gate", a.baseline.gate, "gate file, or its name: the metrics to keep (default: the main ones)");
+  update->add_flag("--allow-incomplete", a.baseline.allow_incomplete, "leave out cells that failed or are not finished");
+}
+
 void add_commands(CLI::App& app, Arguments& a) {
+  add_gate_commands(app, a);
+
   CLI::App* run = add(app, a, "run", "simulate a scenario, run estimators, evaluate them and write the report",
                       [&a] { return run_command(a.scenario, a.common); });
   add_scenario_options(run, a, false);
