@@ -5,6 +5,9 @@ import { formatNumber } from "./format.js";
 import { isNumber, sortRows } from "./stats.js";
 import { metricTip, sortButton } from "./tables.js";
 
+/** The farthest that an axis of ratios reaches: beyond it a mark points outwards. */
+const kReach = 1000;
+
 export const isSignificant = (row) => ["better", "worse", "different"].includes(row.verdict);
 
 /** How far a ratio is from 1, either way; null where there is none. */
@@ -54,23 +57,32 @@ export function matching(rows, filter, metrics = {}) {
 export function bar(axis, row) {
   const at = (ratio) => `${placeOnAxis(axis, ratio)}%`;
   const known = isNumber(row.low) && isNumber(row.high);
-  const beyond = known && (row.high > axis.high || row.low < axis.low);
+  const beyond = row.ratio > axis.high || row.ratio < axis.low;
   return el("span", { class: `interval ${tone(row)}`, role: "img",
     "aria-label": isNumber(row.ratio) ? `ratio ${formatNumber(row.ratio)}${known ? `, 95 % interval ${formatNumber(row.low)} to ${formatNumber(row.high)}` : ", no interval"}` : "no ratio" },
   el("i", { class: "one", style: { left: at(1) } }),
   known ? el("i", { class: "span", style: { left: at(row.low), right: `${100 - placeOnAxis(axis, row.high)}%` } }) : null,
-  isNumber(row.ratio) ? el("i", { class: `mid${beyond && (row.ratio > axis.high || row.ratio < axis.low) ? " beyond" : ""}`, style: { left: at(row.ratio) } }) : null);
+  isNumber(row.ratio) ? el("i", { class: `mid${beyond ? ` beyond ${row.ratio > 1 ? "right" : "left"}` : ""}`, style: { left: at(row.ratio) } }) : null);
 }
 
-function ticks(axis) {
+/** Ticks with room between them (in percent of the axis), 1 first. */
+export function sparseTicks(axis, room) {
+  const kept = [];
+  for (const tick of sortRows(axis.ticks, (value) => Math.abs(Math.log(value)), true).sort((a, b) => (a === 1 ? -1 : b === 1 ? 1 : 0))) {
+    if (kept.every((other) => Math.abs(placeOnAxis(axis, other) - placeOnAxis(axis, tick)) >= room)) kept.push(tick);
+  }
+  return kept.sort((a, b) => a - b);
+}
+
+function ticks(axis, room = 0) {
   return el("span", { class: "interval ticks", "aria-hidden": "true" },
-    ...axis.ticks.map((tick) => el("span", { style: { left: `${placeOnAxis(axis, tick)}%` } }, String(tick))));
+    ...sparseTicks(axis, room).map((tick) => el("span", { style: { left: `${placeOnAxis(axis, tick)}%` } }, String(tick))));
 }
 
 /** Ratios with their intervals, one under the other. */
 export function forest(data, shown) {
   const all = [...shown.significant, ...shown.others];
-  const axis = ratioAxis(all);
+  const axis = ratioAxis(all, kReach);
   const line = (row) => el("div", { class: "forest-row" },
     el("span", { class: "forest-name" },
       el("span", { class: "metric", tabindex: "0", "data-tip": metricTip(data.metrics[row.metric]) || null }, row.metric),
@@ -112,7 +124,7 @@ export class RowTable {
     const { data } = this;
     const found = matching(this.rows, this.words, data.metrics).filter((row) => !this.onlySignificant || isSignificant(row));
     this.count.textContent = `${found.length} of ${this.rows.length}`;
-    const axis = ratioAxis(found.filter((row) => isNumber(row.low)));
+    const axis = ratioAxis(found.filter((row) => isNumber(row.low)), kReach);
     const keys = {
       metric: (row) => row.metric, where: (row) => whereOf(row), a: (row) => row.a_median, b: (row) => row.b_median, ratio: (row) => row.ratio,
       better: (row) => row.b_better / row.seeds, p: (row) => row.p_adjusted, verdict: (row) => kVerdicts.indexOf(row.verdict) - Math.min(0.99, change(row) ?? 0) ,
@@ -128,7 +140,7 @@ export class RowTable {
       header("a", "A", undefined, `${data.a.label}: median over the seeds that both have`),
       header("b", "B", undefined, `${data.b.label}: median over the seeds that both have`),
       header("ratio", "B / A", undefined, "Geometric mean over the seeds of B's value over A's; beside it the 95 % interval (Student's, of the logarithm)"),
-      el("th", { scope: "col", class: "interval-head" }, ticks(axis)),
+      el("th", { scope: "col", class: "interval-head" }, ticks(axis, 22)),
       header("better", "B better on", undefined, "On how many of the seeds B's value is the better one (the lower one, where neither way is better)"),
       header("p", "Adjusted p", undefined, "By Holm's rule over all rows that are judged together: below 0.05 is called a difference"),
       header("verdict", "Difference", undefined, "Sort by verdict"));

@@ -50,7 +50,7 @@ function changes() {
 function tables() {
   const own = data.rows.filter((row) => !row.cost);
   const costs = data.rows.filter((row) => row.cost);
-  if (own.length) section("rows", "All comparisons", "All", new RowTable(data, own, { label: "All comparisons" }).element);
+  if (own.length) section("rows", "All comparisons", "All rows", new RowTable(data, own, { label: "All comparisons" }).element);
   if (costs.length) {
     section("cost", "Cost", "Cost",
       el("p", { class: "note" }, "Times and memory depend on the machine and on what else it did: a difference here may be the machine's. They are judged among themselves."),

@@ -62,9 +62,10 @@ export function pathMap(path, stretches, colorOf, wordsOf) {
   }
   const [sx, sy] = place(points[0]).split(",");
   picture.append(svg("path", { d: `M${sx} ${sy}h0`, class: "start", "vector-effect": "non-scaling-stroke", "stroke-linecap": "round" }));
-  const length = scaleLength(box.width);
+  // Inside the picture, since that is what is scaled.
+  const length = scaleLength(box.width), edge = 0.03 * box.width;
+  picture.append(svg("path", { d: `M${edge} ${box.height - 0.03 * box.width}h${length}`, class: "scale", "vector-effect": "non-scaling-stroke" }));
   return el("div", { class: "pathmap-wrap" }, picture,
-    el("div", { class: "pathmap-legend" },
-      el("span", { class: "scale", style: { width: `${(100 * length / box.width).toFixed(2)}%` } }), el("span", {}, `${formatNumber(length, 1)} m`),
-      el("span", { class: "muted" }, el("i", { class: "dot start-dot" }), "start")));
+    el("div", { class: "pathmap-legend" }, el("span", {}, el("i", { class: "scale-mark" }), `${formatNumber(length, 1)} m`),
+      el("span", {}, el("i", { class: "dot start-dot" }), "start")));
 }
