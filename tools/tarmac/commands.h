@@ -43,7 +43,7 @@ int estimate_command(const EstimateArguments& arguments, const CommonArguments& 
 struct EvaluateArguments {
   std::vector<std::string> folders;
   std::string truth, estimate;  ///< the other form: two trajectory files
-  std::string align;              ///< of the two files; "" = se3
+  std::string align;            ///< of the two files; "" = se3
 };
 int evaluate_command(const EvaluateArguments& arguments, const CommonArguments& common);
 

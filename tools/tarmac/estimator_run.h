@@ -10,6 +10,7 @@
 #include "core/diagnostics.h"
 #include "core/recording.h"
 #include "estimators/estimator.h"
+#include "tools/tarmac/child.h"
 #include "tools/tarmac/console.h"
 #include "tools/tarmac/outcome.h"
 
@@ -42,7 +43,15 @@ std::string resolved_options(const EstimatorRequest& request);
 struct EstimatorRunSettings {
   int threads = 1;
   std::string diagnostics = "full";
+  ChildLimits limits = {};                       ///< a foreign tool's own timeout holds beside them
+  std::filesystem::path work_folder = {};        ///< where private folders are made; empty: the system's place
+  std::filesystem::path estimator_program = {};  ///< empty: the tarmac-estimate beside this program
 };
+
+/// Runs one; its results become the folder `target`, put in place whole.
+Outcome run_one_estimator(const EstimatorRequest& request, const std::filesystem::path& recording_folder,
+                          const std::string& recording_hash, const std::filesystem::path& target,
+                          const EstimatorRunSettings& settings, const core::Progress& progress);
 
 /// Runs them one after the other; results go to `folder`/<name>/, each put in place whole. Earlier results of the same
 /// estimators are removed first.
