@@ -18,11 +18,19 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "scenarios/cell.h"
 
 namespace tarmac::scenarios {
 
 inline constexpr int kStoreSchema = 1;
+
+/// The disk is full, or fails: nothing of what was being written is in the store, all that was there before is, and the
+/// store can be used on once there is room.
+class StoreFull : public core::InputError {
+ public:
+  using InputError::InputError;
+};
 
 /// What a store was made of and by; two stores can be merged when all of it is the same.
 struct StoreIdentity {
@@ -76,6 +84,8 @@ class Store {
   void release(const std::string& key);
   /// Records a claimed cell's outcome and metrics, in one transaction.
   void finish(const std::string& key, const CellOutcome& outcome, std::span<const MetricValue> metrics);
+  /// The same of many, in one transaction: for results that come in bulk. Cells that are pending are claimed by it.
+  void finish(std::span<const CellResult> results);
   /// Cells that are pending, in order of insertion.
   std::vector<std::string> pending() const;
 
@@ -89,7 +99,8 @@ class Store {
     std::vector<std::vector<std::optional<std::string>>> rows;  ///< empty = NULL
   };
   /// A statement that only reads (SQLite's authoriser holds it to that); throws InputError with SQLite's message.
-  Table query(const std::string& sql) const;
+  /// `check` is called now and then meanwhile: what it throws ends the statement.
+  Table query(const std::string& sql, const std::function<void()>& check = {}) const;
   /// The deterministic columns of all cells and metrics, sorted: equal stores give equal bytes (numbers with 17
   /// digits).
   void dump(std::ostream& out) const;
