@@ -65,6 +65,15 @@ struct SweepArguments {
   bool resume = false, rerun_failed = false, dry_run = false, fast = false;
 };
 int sweep_command(const SweepArguments& arguments, const CommonArguments& common);
+struct CompareArguments {
+  std::vector<std::string> folders;  ///< A and B; one alone: two estimators of it
+  std::string out, markdown;         ///< page and Markdown; "" = none
+  std::string a, b;                  ///< estimators
+  std::vector<std::string> metrics;
+  std::string case_name;
+};
+/// In tools/compare.
+int compare_command(const CompareArguments& arguments, const CommonArguments& common);
 
 int list_command(const std::string& kind, const CommonArguments& common);
 struct DescribeArguments {

@@ -28,6 +28,7 @@ struct Arguments {
   SweepArguments sweep;
   GateArguments gate;
   BaselineArguments baseline;
+  CompareArguments compare;
   std::string list_kind;
   std::function<int()> chosen;
 };
@@ -110,6 +111,21 @@ void add_gate_commands(CLI::App& app, Arguments& a) {
   update->add_flag("--allow-incomplete", a.baseline.allow_incomplete, "leave out cells that failed or are not finished");
 }
 
+void add_compare_command(CLI::App& app, Arguments& a) {
+  CLI::App* compare = add(app, a, "compare", "two builds, or two estimators, in pairs over the same seeds",
+                          [&a] { return compare_command(a.compare, a.common); });
+  compare->add_option("folders", a.compare.folders, "A and B: a sweep's folder or a run's; one alone with --a and --b")
+      ->required()
+      ->expected(1, 2);
+  compare->add_option("-o,--out", a.compare.out, "the page to write");
+  compare->add_option("--markdown", a.compare.markdown, "Markdown to write, for a pull request");
+  compare->add_option("--a", a.compare.a, "estimator of A (default: each one against its namesake)");
+  compare->add_option("--b", a.compare.b, "estimator of B");
+  compare->add_option("--metrics", a.compare.metrics, "these alone, separated by commas (default: all)")
+      ->delimiter(',');
+  compare->add_option("--case", a.compare.case_name, "this case alone");
+}
+
 void add_commands(CLI::App& app, Arguments& a) {
   add_gate_commands(app, a);
 
@@ -147,6 +163,8 @@ void add_commands(CLI::App& app, Arguments& a) {
                          [&a] { return report_command(a.report, a.common); });
   report->add_option("folders", a.report.folders, "folders of runs")->required();
   report->add_option("-o,--out", a.report.out, "the page to write")->required();
+
+  add_compare_command(app, a);
 
   CLI::App* list = add(app, a, "list", "what there is", [&a] { return list_command(a.list_kind, a.common); });
   list->add_option("kind", a.list_kind,
