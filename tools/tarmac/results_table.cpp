@@ -10,7 +10,6 @@
 #include "core/error.h"
 #include "core/estimate.h"
 #include "metrics/pool.h"
-#include "tools/tarmac/text_table.h"
 
 namespace tarmac::tools {
 namespace {
