@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "metrics/paired_logs.h"
@@ -18,10 +19,10 @@ namespace {
 constexpr std::size_t kLeastPairs = 3;
 constexpr double kSignificance = 0.05;
 
-void judge(double significance, PairedComparison& c) {
+void judge(double p, double significance, PairedComparison& c) {
   if (c.pairs < kLeastPairs)
     c.difference = Difference::too_few;
-  else if (c.p >= significance)
+  else if (p >= significance)
     c.difference = Difference::not_significant;
   else
     c.difference = c.ratio < 1 ? Difference::lower : Difference::higher;
@@ -54,20 +55,6 @@ PairedComparison compare_two(const std::vector<const Evaluation*>& evaluations, 
   c.b = b;
   c.metric = metric;
   return c;
-}
-
-/// Holm 1979: the smallest p against significance / n, the next against significance / (n - 1), until one fails.
-void judge_by_holm(std::vector<PairedComparison>& comparisons) {
-  std::vector<PairedComparison*> order;
-  for (PairedComparison& c : comparisons)
-    if (c.pairs >= kLeastPairs) order.push_back(&c);
-  std::stable_sort(order.begin(), order.end(), [](const auto* x, const auto* y) { return x->p < y->p; });
-  bool holds = true;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const double level = kSignificance / static_cast<double>(order.size() - k);
-    holds = holds && order[k]->p < level;
-    judge(holds ? std::numeric_limits<double>::infinity() : 0, *order[k]);
-  }
 }
 
 }  // namespace
@@ -106,8 +93,31 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
     c.p = 2 * student_above(c.pairs, std::abs(summary.mean) / summary.error);
   else
     c.p = summary.mean == 0 ? 1 : 0;  // the same ratio on every seed
-  judge(significance, c);
+  c.p_adjusted = c.p;
+  judge(c.p, significance, c);
   return c;
+}
+
+void judge_by_holm(std::span<PairedComparison> comparisons, double significance) {
+  std::vector<PairedComparison*> order;
+  for (PairedComparison& c : comparisons) {
+    const bool same = c.a_lower == 0 && c.b_lower == 0;
+    if (c.pairs >= kLeastPairs && !same) order.push_back(&c);
+  }
+  std::stable_sort(order.begin(), order.end(), [](const auto* x, const auto* y) { return x->p < y->p; });
+  double adjusted = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    adjusted = std::min(1.0, std::max(adjusted, static_cast<double>(order.size() - k) * order[k]->p));
+    order[k]->p_adjusted = adjusted;
+    judge(adjusted, significance, *order[k]);
+  }
+}
+
+Better better_of(const MetricEntry& metric) {
+  if (metric.lower_is_better) return Better::lower;
+  const std::string_view name = metric.name, family = metric.family;
+  const bool score = family == "coverage" || name.starts_with("degeneracy_") || name == "real_time_factor";
+  return score ? Better::higher : Better::neither;
 }
 
 PairedComparison turned_around(const PairedComparison& comparison) {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "core/error.h"
+#include "scenarios/store_conditions.h"
 #include "scenarios/store_schema.h"
 
 namespace tarmac::scenarios {
@@ -16,47 +16,10 @@ namespace {
 /// One in so many cells or fewer: their metrics are looked up one by one instead of reading a metric of all cells.
 constexpr std::size_t kFewCells = 16;
 
-/// " and column in …", with its values. Lists are given as JSON, so that they may be as long as they like.
-class Conditions {
- public:
-  template <class T>
-  void among(const std::string& column, const std::vector<T>& values) {
-    if (values.empty()) return;
-    sql_ += fmt::format(" and {} in (select value from json_each(?))", column);
-    bound_.push_back(nlohmann::json(values).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  }
-  void parameter(const Override& parameter) {
-    sql_ += " and exists (select 1 from parameters p where p.cell = c.id and p.path = ? and p.value = ?)";
-    bound_.push_back(parameter.first);
-    bound_.push_back(parameter.second);
-  }
-  const std::string& sql() const { return sql_; }
-  void bind(Statement& statement) const {
-    for (std::size_t i = 0; i < bound_.size(); ++i) statement.bind(static_cast<int>(i) + 1, bound_[i]);
-  }
+constexpr const char* kCellColumns = "c.id, c.key, c.world, c.block, c.scenario, c.case_name, c.seed, c.estimator";
 
- private:
-  std::string sql_;
-  std::vector<std::string> bound_;
-};
-
-Conditions conditions(const ResultFilter& filter) {
-  Conditions all;
-  all.among("c.key", filter.keys);
-  all.among("c.scenario", filter.scenarios);
-  all.among("c.case_name", filter.cases);
-  all.among("c.estimator", filter.estimators);
-  all.among("c.seed", filter.seeds);
-  for (const Override& parameter : filter.parameters) all.parameter(parameter);
-  return all;
-}
-
-constexpr const char* kCellColumns =
-    "c.id, c.key, c.world, c.block, c.scenario, c.case_name, c.seed, c.estimator, "
-    "exists (select 1 from parameters p where p.cell = c.id)";
-
-/// Reads kCellColumns; parameters are read for themselves, most cells of a sweep have some.
-Cell read_cell(Database& db, const Statement& row) {
+/// Reads kCellColumns.
+Cell read_cell(const Statement& row) {
   Cell cell;
   cell.key = row.text(1);
   cell.world = row.text(2);
@@ -65,10 +28,6 @@ Cell read_cell(Database& db, const Statement& row) {
   cell.case_name = row.text(5);
   cell.seed = static_cast<std::uint64_t>(row.integer(6));
   cell.estimator = row.text(7);
-  if (row.integer(8) == 0) return cell;
-  Statement& parameters =
-      db.cached("select path, value from parameters where cell = ? order by position").with({row.integer(0)});
-  while (parameters.step()) cell.parameters.emplace_back(parameters.text(0), parameters.text(1));
   return cell;
 }
 
@@ -94,7 +53,7 @@ struct Found {
 };
 
 std::vector<Found> find_cells(Database& db, const ResultFilter& filter) {
-  Conditions where = conditions(filter);
+  Conditions where(filter);
   where.among("o.status", filter.statuses);
   Statement rows =
       db.prepare(fmt::format("select {}, {} from cells c join outcomes o on o.cell = c.id where 1{} "
@@ -102,7 +61,7 @@ std::vector<Found> find_cells(Database& db, const ResultFilter& filter) {
                              kCellColumns, kOutcomeColumns, where.sql()));
   where.bind(rows);
   std::vector<Found> found;
-  while (rows.step()) found.push_back({rows.integer(0), {read_cell(db, rows), read_outcome(rows, 9), {}}});
+  while (rows.step()) found.push_back({rows.integer(0), {read_cell(rows), read_outcome(rows, 8), {}}});
   return found;
 }
 
@@ -129,38 +88,48 @@ std::vector<MetricName> metric_names(Database& db, const std::vector<std::string
   return names;
 }
 
-void add_value(CellResult& to, const MetricName& name, const Statement& row) {
-  MetricValue& metric = to.metrics.emplace_back(name.form);
-  metric.value = row.optional_real(1);
-  metric.ci_low = row.optional_real(2);
-  metric.ci_high = row.optional_real(3);
-  metric.status = row.text(4);
+/// Gives each found cell its rows of a table whose last bound column and first read one are the cell. `found` is in
+/// order of id.
+void join_rows(Database& db, const char* of_one, const char* of_all, const std::vector<Bound>& bound,
+               std::vector<Found>& found, const std::function<void(CellResult&, const Statement&)>& add) {
+  const auto bind = [&](Statement& statement) {
+    for (std::size_t i = 0; i < bound.size(); ++i) statement.bind(static_cast<int>(i) + 1, bound[i]);
+  };
+  if (found.size() * kFewCells < static_cast<std::size_t>(db.integer("select count(*) from cells"))) {
+    Statement& rows = db.cached(of_one);
+    bind(rows);
+    for (Found& cell : found) {
+      rows.bind(static_cast<int>(bound.size()) + 1, cell.id);
+      while (rows.step()) add(cell.result, rows);
+    }
+    return;
+  }
+  Statement& rows = db.cached(of_all);
+  bind(rows);
+  auto next = found.begin();
+  while (rows.step()) {
+    while (next != found.end() && next->id < rows.integer(0)) ++next;
+    if (next != found.end() && next->id == rows.integer(0)) add(next->result, rows);
+  }
 }
 
-constexpr const char* kOneValue =
-    "select cell, value, ci_low, ci_high, status from metric_values where metric = ? and cell = ?";
-constexpr const char* kAllValues =
-    "select cell, value, ci_low, ci_high, status from metric_values where metric = ? "
-    "order by cell";
+void load_parameters(Database& db, std::vector<Found>& found) {
+  join_rows(db, "select cell, path, value from parameters where cell = ? order by position",
+            "select cell, path, value from parameters order by cell, position", {}, found,
+            [](CellResult& to, const Statement& row) { to.cell.parameters.emplace_back(row.text(1), row.text(2)); });
+}
 
-/// `found` in order of id.
 void load_metrics(Database& db, const std::vector<MetricName>& names, std::vector<Found>& found) {
-  const bool few = found.size() * kFewCells < static_cast<std::size_t>(db.integer("select count(*) from outcomes"));
   for (const MetricName& name : names) {
-    if (few) {
-      for (Found& cell : found) {
-        Statement& row = db.cached(kOneValue).with({name.id, cell.id});
-        if (row.step()) add_value(cell.result, name, row);
-        row.reset();
-      }
-      continue;
-    }
-    Statement& rows = db.cached(kAllValues).with({name.id});
-    auto next = found.begin();
-    while (rows.step()) {
-      while (next != found.end() && next->id < rows.integer(0)) ++next;
-      if (next != found.end() && next->id == rows.integer(0)) add_value(next->result, name, rows);
-    }
+    join_rows(db, "select cell, value, ci_low, ci_high, status from metric_values where metric = ? and cell = ?",
+              "select cell, value, ci_low, ci_high, status from metric_values where metric = ? order by cell",
+              {name.id}, found, [&](CellResult& to, const Statement& row) {
+                MetricValue& metric = to.metrics.emplace_back(name.form);
+                metric.value = row.optional_real(1);
+                metric.ci_low = row.optional_real(2);
+                metric.ci_high = row.optional_real(3);
+                metric.status = row.text(4);
+              });
   }
 }
 
@@ -170,8 +139,11 @@ auto order_of(const Cell& cell) {
 
 std::vector<Cell> cells_where(Database& db, const char* condition) {
   Statement rows = db.prepare(fmt::format("select {} from cells c where {} order by id", kCellColumns, condition));
+  std::vector<Found> found;
+  while (rows.step()) found.push_back({rows.integer(0), {read_cell(rows), {}, {}}});
+  load_parameters(db, found);
   std::vector<Cell> cells;
-  while (rows.step()) cells.push_back(read_cell(db, rows));
+  for (Found& one : found) cells.push_back(std::move(one.result.cell));
   return cells;
 }
 
@@ -223,6 +195,7 @@ std::vector<Cell> read_unfinished(Database& db) {
 
 std::vector<CellResult> read_results(Database& db, const ResultFilter& filter) {
   std::vector<Found> found = find_cells(db, filter);
+  load_parameters(db, found);
   load_metrics(db, metric_names(db, filter.metrics), found);
   std::vector<std::size_t> order(found.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

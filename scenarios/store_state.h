@@ -25,6 +25,9 @@ struct Store::State {
   std::filesystem::path work() const { return folder / "work"; }
   /// Throws std::logic_error before start().
   void require_started() const;
+  /// Inside a transaction.
+  bool claim(const std::string& key);
+  void finish(const std::string& key, const CellOutcome& outcome, std::span<const MetricValue> metrics);
   void end_run();
 };
 

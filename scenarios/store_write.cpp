@@ -166,16 +166,20 @@ fs::path Store::work_folder() const {
   return state_->lock->folder();
 }
 
+bool Store::State::claim(const std::string& key) {
+  const std::string now = now_text();
+  db->run(
+      "insert or ignore into claims(cell, run, at) select id, ?, ? from cells c where key = ? and not exists "
+      "(select 1 from outcomes o where o.cell = c.id)",
+      {run, now, key});
+  return db->changes() == 1;
+}
+
 bool Store::claim(const std::string& key) {
   State& s = *state_;
   const std::lock_guard guard(s.mutex);
   s.require_started();
-  const std::string now = now_text();
-  s.db->run(
-      "insert or ignore into claims(cell, run, at) select id, ?, ? from cells c where key = ? and not exists "
-      "(select 1 from outcomes o where o.cell = c.id)",
-      {s.run, now, key});
-  if (s.db->changes() == 1) return true;
+  if (s.claim(key)) return true;
   if (s.db->integer("select count(*) from cells where key = ?", {key}) == 0)
     throw std::logic_error(fmt::format("Store::claim: there is no cell {}", key));
   return false;
@@ -190,20 +194,41 @@ void Store::release(const std::string& key) {
     throw std::logic_error(fmt::format("Store::release: cell {} is not claimed by this process", key));
 }
 
+void Store::State::finish(const std::string& key, const CellOutcome& outcome, std::span<const MetricValue> metrics) {
+  const std::int64_t cell =
+      db->integer("select id from cells join claims on cell = id where key = ? and run = ?", {key, run});
+  if (cell == 0) throw std::logic_error(fmt::format("Store::finish: cell {} is not claimed by this process", key));
+  insert_outcome(*db, metric_names, run, cell, outcome, metrics);
+  db->run("delete from claims where cell = ?", {cell});
+}
+
 void Store::finish(const std::string& key, const CellOutcome& outcome, std::span<const MetricValue> metrics) {
   State& s = *state_;
   const std::lock_guard guard(s.mutex);
   s.require_started();
   try {
     Transaction transaction(*s.db);
-    const std::int64_t cell =
-        s.db->integer("select id from cells join claims on cell = id where key = ? and run = ?", {key, s.run});
-    if (cell == 0) throw std::logic_error(fmt::format("Store::finish: cell {} is not claimed by this process", key));
-    insert_outcome(*s.db, s.metric_names, s.run, cell, outcome, metrics);
-    s.db->run("delete from claims where cell = ?", {cell});
+    s.finish(key, outcome, metrics);
     transaction.commit();
   } catch (...) {
     s.metric_names.clear();  // some may have been rolled back
+    throw;
+  }
+}
+
+void Store::finish(std::span<const CellResult> results) {
+  State& s = *state_;
+  const std::lock_guard guard(s.mutex);
+  s.require_started();
+  try {
+    Transaction transaction(*s.db);
+    for (const CellResult& result : results) {
+      s.claim(result.cell.key);
+      s.finish(result.cell.key, result.outcome, result.metrics);
+    }
+    transaction.commit();
+  } catch (...) {
+    s.metric_names.clear();
     throw;
   }
 }

@@ -53,6 +53,28 @@ struct ReportArguments {
 };
 int report_command(const ReportArguments& arguments, const CommonArguments& common);
 
+struct SweepArguments {
+  std::string sweep;
+  std::string out;
+  std::vector<std::string> sets;
+  std::string config;
+  std::string shard;  ///< "i/n"; empty = all
+  std::string cache;  ///< empty = DIR/recordings
+  double cache_limit_gb = 20;
+  std::string estimator_program;
+  bool resume = false, rerun_failed = false, dry_run = false, fast = false;
+};
+int sweep_command(const SweepArguments& arguments, const CommonArguments& common);
+struct CompareArguments {
+  std::vector<std::string> folders;  ///< A and B; one alone: two estimators of it
+  std::string out, markdown;         ///< page and Markdown; "" = none
+  std::string a, b;                  ///< estimators
+  std::vector<std::string> metrics;
+  std::string case_name;
+};
+/// In tools/compare.
+int compare_command(const CompareArguments& arguments, const CommonArguments& common);
+
 int list_command(const std::string& kind, const CommonArguments& common);
 struct DescribeArguments {
   std::string kind, name, picture;

@@ -25,8 +25,10 @@ struct Arguments {
   DescribeArguments describe;
   TransferArguments transfer;
   BenchArguments bench;
+  SweepArguments sweep;
   GateArguments gate;
   BaselineArguments baseline;
+  CompareArguments compare;
   std::string list_kind;
   std::function<int()> chosen;
 };
@@ -64,6 +66,32 @@ void add_estimator_options(CLI::App* command, std::string& estimators, std::stri
       ->check(CLI::IsMember({"none", "system", "full"}));
 }
 
+void add_sweep_command(CLI::App& app, Arguments& a) {
+  CLI::App* sweep = add(app, a, "sweep", "run the cells of a sweep file into a store",
+                        [&a] { return sweep_command(a.sweep, a.common); });
+  sweep->add_option("sweep", a.sweep.sweep, "sweep file, or its name")->required();
+  sweep->add_option("-o,--out", a.sweep.out, "folder of the store");
+  sweep->add_option("--jobs", a.common.jobs, "cells at once, one thread each (default: all cores)")
+      ->check(CLI::Range(1, 1024));
+  sweep->add_flag("--resume", a.sweep.resume, "go on with a store that is there: run what is not finished");
+  sweep->add_flag("--rerun-failed", a.sweep.rerun_failed, "the same, and what failed once more");
+  sweep->add_flag("--dry-run", a.sweep.dry_run, "list the cells with estimates of time and disk; run nothing");
+  sweep->add_option("--shard", a.sweep.shard, "I/N: the I-th of N parts; `tarmac merge` makes one store of them");
+  sweep->add_option("--set", a.sweep.sets, "set a field in all blocks: duration_s=5 (repeatable)")
+      ->allow_extra_args(false);
+  sweep->add_option("--config", a.sweep.config, "YAML file with an `estimators:` block");
+  sweep->add_option("--cache", a.sweep.cache, "folder of recordings, which several sweeps may share (default: in DIR)");
+  sweep
+      ->add_option("--cache-limit-gb", a.sweep.cache_limit_gb,
+                   "room that recordings may take; 0 = no limit (default 20)")
+      ->check(CLI::NonNegativeNumber);
+  sweep
+      ->add_option("--estimator-program", a.sweep.estimator_program,
+                   "another build's tarmac-estimate: its estimators, this build's simulator and metrics")
+      ->check(CLI::ExistingFile);
+  sweep->add_flag("--fast", a.sweep.fast, "lift the pinned instruction set of the ray tracer");
+}
+
 void add_gate_commands(CLI::App& app, Arguments& a) {
   CLI::App* gate = add(app, a, "gate", "hold a sweep's results to a gate file; exit code 1 when a row fails",
                        [&a] { return gate_command(a.gate, a.common); });
@@ -81,6 +109,21 @@ void add_gate_commands(CLI::App& app, Arguments& a) {
   update->add_option("-o,--out", a.baseline.out, "baseline file")->required();
   update->add_option("--gate", a.baseline.gate, "gate file, or its name: the metrics to keep (default: the main ones)");
   update->add_flag("--allow-incomplete", a.baseline.allow_incomplete, "leave out cells that failed or are not finished");
+}
+
+void add_compare_command(CLI::App& app, Arguments& a) {
+  CLI::App* compare = add(app, a, "compare", "two builds, or two estimators, in pairs over the same seeds",
+                          [&a] { return compare_command(a.compare, a.common); });
+  compare->add_option("folders", a.compare.folders, "A and B: a sweep's folder or a run's; one alone with --a and --b")
+      ->required()
+      ->expected(1, 2);
+  compare->add_option("-o,--out", a.compare.out, "the page to write");
+  compare->add_option("--markdown", a.compare.markdown, "Markdown to write, for a pull request");
+  compare->add_option("--a", a.compare.a, "estimator of A (default: each one against its namesake)");
+  compare->add_option("--b", a.compare.b, "estimator of B");
+  compare->add_option("--metrics", a.compare.metrics, "these alone, separated by commas (default: all)")
+      ->delimiter(',');
+  compare->add_option("--case", a.compare.case_name, "this case alone");
 }
 
 void add_commands(CLI::App& app, Arguments& a) {
@@ -121,13 +164,18 @@ void add_commands(CLI::App& app, Arguments& a) {
   report->add_option("folders", a.report.folders, "folders of runs")->required();
   report->add_option("-o,--out", a.report.out, "the page to write")->required();
 
+  add_compare_command(app, a);
+
   CLI::App* list = add(app, a, "list", "what there is", [&a] { return list_command(a.list_kind, a.common); });
-  list->add_option("kind", a.list_kind,
-                   "scenarios, scenes, motions, sensors, imus, estimators or metrics (default: all)");
+  list->add_option(
+      "kind", a.list_kind,
+      "scenarios, sweeps, gates, scenes, motions, sensors, imus, faults, estimators or metrics (default: all)");
 
   CLI::App* describe = add(app, a, "describe", "one thing in full: options, defaults, ranges, sources",
                            [&a] { return describe_command(a.describe, a.common); });
-  describe->add_option("kind", a.describe.kind, "scenario, scene, motion, sensor, imu, estimator or metric")
+  describe
+      ->add_option("kind", a.describe.kind,
+                   "scenario, sweep, gate, scene, motion, sensor, imu, fault, estimator or metric")
       ->required();
   describe->add_option("name", a.describe.name, "its name")->required();
   describe->add_option("-o,--out", a.describe.picture, "write a picture (scene and scenario)");
@@ -135,6 +183,8 @@ void add_commands(CLI::App& app, Arguments& a) {
   CLI::App* bench = add(app, a, "bench", "what simulating, estimating and scoring cost on this machine",
                         [&a] { return bench_command(a.bench, a.common); });
   bench->add_option("benches", a.bench.benches, "sim, estimators, metrics (default: all)");
+
+  add_sweep_command(app, a);
 
   for (const bool importing : {true, false}) {
     CLI::App* transfer = importing ? add(app, a, "import", "make a recording (or a TUM file) from another format",
