@@ -98,9 +98,9 @@ TEST(CompareWords, CostsAreNoPartOfTheVerdict) {
 TEST(CompareWords, ARowThatOnlyItsOwnIntervalClearsIsCalledNotSettled) {
   CompareRow r = row("ate_se3_rmse_m", CompareVerdict::no_difference, 1.3);
   r.comparison.p = 0.03;
-  EXPECT_EQ(words_of(r), "not settled: one of many");
+  EXPECT_EQ(words_of(r), "not settled");
   r.comparison.p = 0.3;
-  EXPECT_EQ(words_of(r), "no significant difference");
+  EXPECT_EQ(words_of(r), "not significant");
   r.verdict = CompareVerdict::different;
   EXPECT_EQ(words_of(r), "higher");
 }
@@ -164,8 +164,8 @@ TEST(CompareMarkdown, BeginsWithTheVerdictAndFoldsWhatIsNotSignificant) {
   const std::size_t changed =
       text.find("| worse | loop, kiss-icp | deskew\\_error\\_rms\\_m | 0.100 | 0.150 | +50 % |");
   EXPECT_LT(changed, fold) << text;
-  EXPECT_GT(text.find("| no significant difference | loop, kiss-icp | ate"), fold);
-  EXPECT_THAT(text, HasSubstr("No significant difference (1)"));
+  EXPECT_GT(text.find("| not significant | loop, kiss-icp | ate"), fold);
+  EXPECT_THAT(text, HasSubstr("Not significant (1)"));
   EXPECT_THAT(text, HasSubstr("Not compared: 1 no result in B, 5 only in A"));
   EXPECT_THAT(text, HasSubstr("The page: page.html"));
 }
