@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -56,6 +57,18 @@ struct ResultFilter {
   std::vector<std::string> metrics;  ///< those to load; empty: all. Cells without them are there all the same
 };
 
+/// Cells that have the same values in some columns.
+struct CellGroup {
+  std::vector<std::string> by;                  ///< those values
+  std::map<std::string, std::size_t> statuses;  ///< cells by status; `pending` and `running` are among them
+  struct Metric {
+    std::vector<double> values;  ///< of the cells that have one, in order of insertion
+    std::string unit;
+    std::string missing;  ///< why one has none: "n/a: …"
+  };
+  std::vector<Metric> metrics;  ///< in the order asked for
+};
+
 class Store {
  public:
   /// Makes the folder and an empty store with all cells pending. Throws InputError when there is one already.
@@ -93,6 +106,13 @@ class Store {
   std::vector<CellResult> results(const ResultFilter& filter) const;
   /// Cells that are not finished.
   std::vector<Cell> unfinished() const;
+
+  /// All cells that match, finished or not, by columns (case, estimator, scenario, block, seed, world, status), sorted
+  /// by them; with the values of the metrics that the filter names, of the causal estimate where there is one. Throws
+  /// InputError for another column.
+  std::vector<CellGroup> groups(const ResultFilter& filter, const std::vector<std::string>& by) const;
+  /// The values that stand in one of those columns; or, of `metric` and `parameter`, the names that there are.
+  std::vector<std::string> distinct(const std::string& column) const;
 
   struct Table {
     std::vector<std::string> columns;

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "core/error.h"
+#include "scenarios/store_conditions.h"
 #include "scenarios/store_schema.h"
 
 namespace tarmac::scenarios {
@@ -15,41 +15,6 @@ namespace {
 
 /// One in so many cells or fewer: their metrics are looked up one by one instead of reading a metric of all cells.
 constexpr std::size_t kFewCells = 16;
-
-/// " and column in …", with its values. Lists are given as JSON, so that they may be as long as they like.
-class Conditions {
- public:
-  template <class T>
-  void among(const std::string& column, const std::vector<T>& values) {
-    if (values.empty()) return;
-    sql_ += fmt::format(" and {} in (select value from json_each(?))", column);
-    bound_.push_back(nlohmann::json(values).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  }
-  void parameter(const Override& parameter) {
-    sql_ += " and exists (select 1 from parameters p where p.cell = c.id and p.path = ? and p.value = ?)";
-    bound_.push_back(parameter.first);
-    bound_.push_back(parameter.second);
-  }
-  const std::string& sql() const { return sql_; }
-  void bind(Statement& statement) const {
-    for (std::size_t i = 0; i < bound_.size(); ++i) statement.bind(static_cast<int>(i) + 1, bound_[i]);
-  }
-
- private:
-  std::string sql_;
-  std::vector<std::string> bound_;
-};
-
-Conditions conditions(const ResultFilter& filter) {
-  Conditions all;
-  all.among("c.key", filter.keys);
-  all.among("c.scenario", filter.scenarios);
-  all.among("c.case_name", filter.cases);
-  all.among("c.estimator", filter.estimators);
-  all.among("c.seed", filter.seeds);
-  for (const Override& parameter : filter.parameters) all.parameter(parameter);
-  return all;
-}
 
 constexpr const char* kCellColumns = "c.id, c.key, c.world, c.block, c.scenario, c.case_name, c.seed, c.estimator";
 
@@ -88,7 +53,7 @@ struct Found {
 };
 
 std::vector<Found> find_cells(Database& db, const ResultFilter& filter) {
-  Conditions where = conditions(filter);
+  Conditions where(filter);
   where.among("o.status", filter.statuses);
   Statement rows =
       db.prepare(fmt::format("select {}, {} from cells c join outcomes o on o.cell = c.id where 1{} "

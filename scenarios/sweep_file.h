@@ -70,7 +70,11 @@ struct SweepFile {
 SweepFile load_sweep(const std::filesystem::path& file, const std::vector<Override>& sets = {});
 
 /// A sweep (or gate) file by path, or by name in a folder `subfolder` ("sweeps", "gates") of the scenarios folders.
+/// Throws InputError with did-you-mean.
 std::filesystem::path find_beside_scenarios(const std::string& name_or_path, const std::string& subfolder,
                                             const std::vector<std::filesystem::path>& scenario_folders);
+/// All such files, sorted by name.
+std::vector<std::filesystem::path> list_beside_scenarios(const std::string& subfolder,
+                                                         const std::vector<std::filesystem::path>& scenario_folders);
 
 }  // namespace tarmac::scenarios

@@ -1,14 +1,18 @@
 // `tarmac list` and `tarmac describe`: what there is, and one thing in full.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/error.h"
 #include "core/files.h"
 #include "estimators/registry.h"
 #include "metrics/registry.h"
 #include "reports/report.h"
+#include "scenarios/sweep_file.h"
 #include "scenes/registry.h"
 #include "sim/simulate.h"
 #include "sim/truth/motion.h"
@@ -69,6 +73,58 @@ std::vector<Entry> scenario_entries() {
 std::string describe_scenario(const std::string& name) {
   const auto scenario = scenarios::load_scenario(scenarios::find_scenario(name, scenario_folders()), {});
   return resolve_scenario(scenario, static_cast<std::uint64_t>(scenario.seed), {});
+}
+
+std::vector<Entry> sweep_entries() {
+  std::vector<Entry> entries;
+  for (const auto& file : scenarios::list_beside_scenarios("sweeps", scenario_folders())) {
+    entries.push_back({file.stem().string(), scenarios::load_sweep(file).why});
+  }
+  return entries;
+}
+
+/// What each block runs, and how many cells that makes.
+std::string describe_sweep(const std::string& name) {
+  const auto file = scenarios::find_beside_scenarios(name, "sweeps", scenario_folders());
+  const scenarios::SweepFile sweep = scenarios::load_sweep(file);
+  struct Block {
+    std::string name;
+    std::set<std::string> scenarios, cases;
+    std::set<std::uint64_t> seeds;
+    std::vector<std::string> estimators;
+    std::size_t cells = 0;
+  };
+  std::vector<Block> blocks;
+  for (const scenarios::SweepCell& cell : sweep.cells) {
+    if (blocks.empty() || blocks.back().name != cell.block) blocks.emplace_back().name = cell.block;
+    Block& block = blocks.back();
+    block.scenarios.insert(std::filesystem::path(cell.scenario).stem().string());
+    block.cases.insert(cell.case_name);
+    block.seeds.insert(cell.seed);
+    if (std::find(block.estimators.begin(), block.estimators.end(), cell.estimator) == block.estimators.end()) {
+      block.estimators.push_back(cell.estimator);
+    }
+    ++block.cells;
+  }
+  std::string text = fmt::format("{}: {}\n", sweep.name, sweep.why);
+  for (const Block& block : blocks) {
+    text += fmt::format("  {:<24} {} cells: {}; {} case(s) x {} seed(s); {}\n", block.name, block.cells,
+                        fmt::join(block.scenarios, ", "), block.cases.size(), block.seeds.size(),
+                        fmt::join(block.estimators, ", "));
+  }
+  return text + fmt::format("{} cells in all\n", sweep.cells.size());
+}
+
+std::vector<Entry> gate_entries() {
+  std::vector<Entry> entries;
+  for (const auto& file : scenarios::list_beside_scenarios("gates", scenario_folders())) {
+    entries.push_back({file.stem().string(), core::ConfigNode::load(file.string()).child("why").scalar_or("")});
+  }
+  return entries;
+}
+
+std::string describe_gate(const std::string& name) {
+  return core::read_file(scenarios::find_beside_scenarios(name, "gates", scenario_folders()));
 }
 
 std::vector<Entry> scene_entries() {
@@ -149,6 +205,8 @@ std::string describe_metric(const std::string& name) {
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all = {
       {"scenarios", "scenario", scenario_entries, describe_scenario},
+      {"sweeps", "sweep", sweep_entries, describe_sweep},
+      {"gates", "gate", gate_entries, describe_gate},
       {"scenes", "scene", scene_entries, describe_scene},
       {"motions", "motion", motion_entries,
        [](const std::string& name) { return options_text(sim::truth::describe_motion(name)); }},

@@ -53,6 +53,18 @@ struct ReportArguments {
 };
 int report_command(const ReportArguments& arguments, const CommonArguments& common);
 
+struct SweepArguments {
+  std::string sweep;
+  std::string out;
+  std::vector<std::string> sets;
+  std::string config;
+  std::string shard;  ///< "i/n"; empty = all
+  std::string cache;  ///< empty = DIR/recordings
+  double cache_limit_gb = 20;
+  std::string estimator_program;
+  bool resume = false, rerun_failed = false, dry_run = false, fast = false;
+};
+int sweep_command(const SweepArguments& arguments, const CommonArguments& common);
 struct CompareArguments {
   std::vector<std::string> folders;  ///< A and B; one alone: two estimators of it
   std::string out, markdown;         ///< page and Markdown; "" = none
@@ -76,6 +88,22 @@ struct TransferArguments {
 };
 int import_command(const TransferArguments& arguments, const CommonArguments& common);
 int export_command(const TransferArguments& arguments, const CommonArguments& common);
+
+struct GateArguments {
+  std::string folder;  ///< a sweep's
+  std::string gate;    ///< file, or its name
+  std::string junit, markdown;
+  std::string link;  ///< what the Markdown points to for more
+};
+/// Returns 1 when a row failed.
+int gate_command(const GateArguments& arguments, const CommonArguments& common);
+struct BaselineArguments {
+  std::vector<std::string> folders;
+  std::string out;
+  std::string gate;  ///< whose metrics to keep; "" = the headline metrics
+  bool allow_incomplete = false;
+};
+int baseline_update_command(const BaselineArguments& arguments, const CommonArguments& common);
 
 struct BenchArguments {
   std::vector<std::string> benches;  ///< sim, estimators, metrics; empty = all

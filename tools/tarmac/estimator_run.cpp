@@ -174,6 +174,22 @@ void ForeignTool::visit(core::OptionVisitor& v) {
   v("timeout_s", timeout_s, "after which the program is ended", {.above = 0});
 }
 
+std::vector<core::ConfigNode> estimator_blocks(const scenarios::Scenario& scenario, const std::string& config,
+                                               const std::vector<scenarios::Override>& overrides) {
+  std::vector<core::ConfigNode> blocks;
+  if (!config.empty()) {
+    core::ConfigNode file = core::ConfigNode::load(config);
+    // A block of --config stands in for the scenario's of that name; what --set says holds for either.
+    for (const auto& [key, value] : overrides) {
+      if (key.starts_with("estimators.")) file.set(key, value);
+    }
+    file.allow_only({"estimators"});
+    blocks.push_back(file.child("estimators"));
+  }
+  blocks.push_back(scenario.estimators);
+  return blocks;
+}
+
 std::vector<EstimatorRequest> request_estimators(const std::string& list, const std::vector<core::ConfigNode>& blocks) {
   std::vector<std::string> known = bundled_names(), wanted;
   for (const core::ConfigNode& block : blocks) {

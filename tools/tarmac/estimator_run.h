@@ -10,6 +10,7 @@
 #include "core/diagnostics.h"
 #include "core/recording.h"
 #include "estimators/estimator.h"
+#include "scenarios/scenario.h"
 #include "tools/tarmac/child.h"
 #include "tools/tarmac/console.h"
 #include "tools/tarmac/outcome.h"
@@ -31,6 +32,10 @@ struct EstimatorRequest {
   ForeignTool tool;
   core::ConfigNode options;
 };
+
+/// The `estimators:` blocks of a --config file (when there is one) and of the scenario, what --set says in both.
+std::vector<core::ConfigNode> estimator_blocks(const scenarios::Scenario& scenario, const std::string& config,
+                                               const std::vector<scenarios::Override>& overrides);
 
 /// Estimators by the names in `list` ("a,b", or "all" for every bundled one and every foreign one that is configured).
 /// `blocks` are the `estimators:` blocks of the scenario and of --config, later ones first. Validates all options.

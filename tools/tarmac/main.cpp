@@ -25,6 +25,9 @@ struct Arguments {
   DescribeArguments describe;
   TransferArguments transfer;
   BenchArguments bench;
+  SweepArguments sweep;
+  GateArguments gate;
+  BaselineArguments baseline;
   CompareArguments compare;
   std::string list_kind;
   std::function<int()> chosen;
@@ -63,6 +66,51 @@ void add_estimator_options(CLI::App* command, std::string& estimators, std::stri
       ->check(CLI::IsMember({"none", "system", "full"}));
 }
 
+void add_sweep_command(CLI::App& app, Arguments& a) {
+  CLI::App* sweep = add(app, a, "sweep", "run the cells of a sweep file into a store",
+                        [&a] { return sweep_command(a.sweep, a.common); });
+  sweep->add_option("sweep", a.sweep.sweep, "sweep file, or its name")->required();
+  sweep->add_option("-o,--out", a.sweep.out, "folder of the store");
+  sweep->add_option("--jobs", a.common.jobs, "cells at once, one thread each (default: all cores)")
+      ->check(CLI::Range(1, 1024));
+  sweep->add_flag("--resume", a.sweep.resume, "go on with a store that is there: run what is not finished");
+  sweep->add_flag("--rerun-failed", a.sweep.rerun_failed, "the same, and what failed once more");
+  sweep->add_flag("--dry-run", a.sweep.dry_run, "list the cells with estimates of time and disk; run nothing");
+  sweep->add_option("--shard", a.sweep.shard, "I/N: the I-th of N parts; `tarmac merge` makes one store of them");
+  sweep->add_option("--set", a.sweep.sets, "set a field in all blocks: duration_s=5 (repeatable)")
+      ->allow_extra_args(false);
+  sweep->add_option("--config", a.sweep.config, "YAML file with an `estimators:` block");
+  sweep->add_option("--cache", a.sweep.cache, "folder of recordings, which several sweeps may share (default: in DIR)");
+  sweep
+      ->add_option("--cache-limit-gb", a.sweep.cache_limit_gb,
+                   "room that recordings may take; 0 = no limit (default 20)")
+      ->check(CLI::NonNegativeNumber);
+  sweep
+      ->add_option("--estimator-program", a.sweep.estimator_program,
+                   "another build's tarmac-estimate: its estimators, this build's simulator and metrics")
+      ->check(CLI::ExistingFile);
+  sweep->add_flag("--fast", a.sweep.fast, "lift the pinned instruction set of the ray tracer");
+}
+
+void add_gate_commands(CLI::App& app, Arguments& a) {
+  CLI::App* gate = add(app, a, "gate", "hold a sweep's results to a gate file; exit code 1 when a row fails",
+                       [&a] { return gate_command(a.gate, a.common); });
+  gate->add_option("folder", a.gate.folder, "folder of a sweep")->required();
+  gate->add_option("--gate", a.gate.gate, "gate file, or its name")->required();
+  gate->add_option("--junit", a.gate.junit, "write JUnit XML");
+  gate->add_option("--markdown", a.gate.markdown, "write Markdown for a pull request");
+  gate->add_option("--link", a.gate.link, "address of the whole report, for the Markdown");
+
+  CLI::App* baseline = app.add_subcommand("baseline", "what gates hold results to");
+  baseline->require_subcommand(1);
+  CLI::App* update = add(*baseline, a, "update", "write a baseline from sweeps' results, and say what changes",
+                         [&a] { return baseline_update_command(a.baseline, a.common); });
+  update->add_option("folders", a.baseline.folders, "folders of sweeps")->required();
+  update->add_option("-o,--out", a.baseline.out, "baseline file")->required();
+  update->add_option("--gate", a.baseline.gate, "gate file, or its name: the metrics to keep (default: the main ones)");
+  update->add_flag("--allow-incomplete", a.baseline.allow_incomplete, "leave out cells that failed or are not finished");
+}
+
 void add_compare_command(CLI::App& app, Arguments& a) {
   CLI::App* compare = add(app, a, "compare", "two builds, or two estimators, in pairs over the same seeds",
                           [&a] { return compare_command(a.compare, a.common); });
@@ -79,6 +127,8 @@ void add_compare_command(CLI::App& app, Arguments& a) {
 }
 
 void add_commands(CLI::App& app, Arguments& a) {
+  add_gate_commands(app, a);
+
   CLI::App* run = add(app, a, "run", "simulate a scenario, run estimators, evaluate them and write the report",
                       [&a] { return run_command(a.scenario, a.common); });
   add_scenario_options(run, a, false);
@@ -117,12 +167,15 @@ void add_commands(CLI::App& app, Arguments& a) {
   add_compare_command(app, a);
 
   CLI::App* list = add(app, a, "list", "what there is", [&a] { return list_command(a.list_kind, a.common); });
-  list->add_option("kind", a.list_kind,
-                   "scenarios, scenes, motions, sensors, imus, estimators or metrics (default: all)");
+  list->add_option(
+      "kind", a.list_kind,
+      "scenarios, sweeps, gates, scenes, motions, sensors, imus, faults, estimators or metrics (default: all)");
 
   CLI::App* describe = add(app, a, "describe", "one thing in full: options, defaults, ranges, sources",
                            [&a] { return describe_command(a.describe, a.common); });
-  describe->add_option("kind", a.describe.kind, "scenario, scene, motion, sensor, imu, estimator or metric")
+  describe
+      ->add_option("kind", a.describe.kind,
+                   "scenario, sweep, gate, scene, motion, sensor, imu, fault, estimator or metric")
       ->required();
   describe->add_option("name", a.describe.name, "its name")->required();
   describe->add_option("-o,--out", a.describe.picture, "write a picture (scene and scenario)");
@@ -130,6 +183,8 @@ void add_commands(CLI::App& app, Arguments& a) {
   CLI::App* bench = add(app, a, "bench", "what simulating, estimating and scoring cost on this machine",
                         [&a] { return bench_command(a.bench, a.common); });
   bench->add_option("benches", a.bench.benches, "sim, estimators, metrics (default: all)");
+
+  add_sweep_command(app, a);
 
   for (const bool importing : {true, false}) {
     CLI::App* transfer = importing ? add(app, a, "import", "make a recording (or a TUM file) from another format",
