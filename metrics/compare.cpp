@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "metrics/non_inferiority.h"
 #include "metrics/paired_logs.h"
 
 namespace tarmac::metrics {
