@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -161,20 +162,29 @@ TEST_F(GateTest, WhereHigherIsBetterAFallFails) {
   EXPECT_EQ(only(row(kNoWorse, kCoverage), risen).verdict, GateVerdict::pass);
 }
 
+/// Ten seeds whose log ratios to `drive(case_name, 1, 0, ...)` alternate about their mean, so that Student's t is `t`.
+std::vector<CellResult> with_t(const std::string& case_name, double t) {
+  const double half = 0.02, sd = half * std::sqrt(10.0 / 9);
+  const double mean = t * sd / std::sqrt(10.0);
+  std::vector<CellResult> results = drive(case_name, 1, 0, 1);
+  for (std::size_t k = 0; k < results.size(); ++k)
+    *results[k].metrics[0].value *= std::exp(mean + (k % 2 ? half : -half));
+  return results;
+}
+
 TEST_F(GateTest, HolmAsksMoreOfOneRowAmongMany) {
-  // A worsening whose p is below 1 % alone and above it among ten rows.
+  // t = 3.4 with 9 degrees of freedom has a p of 0.004: red alone at 1 %, and not among ten rows.
   std::vector<CellResult> before, now;
   for (int k = 0; k < 10; ++k) {
     const std::string name(1, static_cast<char>('a' + k));
-    for (const CellResult& result : drive(name, 1, 0.02, 1)) before.push_back(result);
-    for (const CellResult& result : drive(name, k == 0 ? 1.03 : 1, 0.02, 2)) now.push_back(result);
+    for (const CellResult& result : drive(name, 1, 0, 1)) before.push_back(result);
+    for (const CellResult& result : with_t(name, k == 0 ? 3.4 : 0)) now.push_back(result);
   }
   baseline_is(before);
   const GateReport with = judge(row(kNoWorse), now, "holm: true\n");
   const GateReport without = judge(row(kNoWorse), now, "holm: false\n");
   ASSERT_EQ(with.rows.size(), 10u);
-  ASSERT_LT(*with.rows[0].p, 0.01);
-  ASSERT_GT(*with.rows[0].p, 0.001) << "the drive was chosen for this";
+  ASSERT_NEAR(*with.rows[0].p, 0.004, 0.0005);
   EXPECT_DOUBLE_EQ(*with.rows[0].p_adjusted, 10 * *with.rows[0].p);
   EXPECT_EQ(with.rows[0].verdict, GateVerdict::inconclusive);
   EXPECT_EQ(without.rows[0].verdict, GateVerdict::fail);
