@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
-#include "metrics/statistics.h"
+#include "metrics/non_inferiority.h"
+#include "metrics/paired_logs.h"
 
 namespace tarmac::metrics {
 
@@ -19,18 +20,10 @@ namespace {
 constexpr std::size_t kLeastPairs = 3;
 constexpr double kSignificance = 0.05;
 
-/// log(a / b) of the pairs that have one.
-std::vector<double> log_ratios(const std::vector<double>& a, const std::vector<double>& b) {
-  std::vector<double> logs;
-  for (std::size_t k = 0; k < a.size(); ++k)
-    if (a[k] > 0 && b[k] > 0 && std::isfinite(a[k]) && std::isfinite(b[k])) logs.push_back(std::log(a[k] / b[k]));
-  return logs;
-}
-
-void judge(double significance, PairedComparison& c) {
+void judge(double p, double significance, PairedComparison& c) {
   if (c.pairs < kLeastPairs)
     c.difference = Difference::too_few;
-  else if (c.p >= significance)
+  else if (p >= significance)
     c.difference = Difference::not_significant;
   else
     c.difference = c.ratio < 1 ? Difference::lower : Difference::higher;
@@ -65,20 +58,6 @@ PairedComparison compare_two(const std::vector<const Evaluation*>& evaluations, 
   return c;
 }
 
-/// Holm 1979: the smallest p against significance / n, the next against significance / (n - 1), until one fails.
-void judge_by_holm(std::vector<PairedComparison>& comparisons) {
-  std::vector<PairedComparison*> order;
-  for (PairedComparison& c : comparisons)
-    if (c.pairs >= kLeastPairs) order.push_back(&c);
-  std::stable_sort(order.begin(), order.end(), [](const auto* x, const auto* y) { return x->p < y->p; });
-  bool holds = true;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const double level = kSignificance / static_cast<double>(order.size() - k);
-    holds = holds && order[k]->p < level;
-    judge(holds ? std::numeric_limits<double>::infinity() : 0, *order[k]);
-  }
-}
-
 }  // namespace
 
 const char* name_of(Difference difference) {
@@ -105,22 +84,42 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
   c.low = 0;
   c.high = std::numeric_limits<double>::infinity();
   if (logs.empty()) return c;
-  const double centre = mean(logs);
-  c.ratio = std::exp(centre);
+  const LogSummary summary = summarise(logs);
+  c.ratio = std::exp(summary.mean);
   if (c.pairs < kLeastPairs) return c;
-  double squares = 0;
-  for (const double d : logs) squares += (d - centre) * (d - centre);
-  const double n = static_cast<double>(c.pairs), error = std::sqrt(squares / (n - 1) / n);
-  const boost::math::students_t distribution(n - 1);
-  const double half_width = error * boost::math::quantile(distribution, 0.975);
-  c.low = std::exp(centre - half_width);
-  c.high = std::exp(centre + half_width);
-  if (error > 0)
-    c.p = 2 * boost::math::cdf(boost::math::complement(distribution, std::abs(centre) / error));
+  const double half_width = summary.error * student_quantile(c.pairs, 0.975);
+  c.low = std::exp(summary.mean - half_width);
+  c.high = std::exp(summary.mean + half_width);
+  if (summary.error > 0)
+    c.p = 2 * student_above(c.pairs, std::abs(summary.mean) / summary.error);
   else
-    c.p = centre == 0 ? 1 : 0;  // the same ratio on every seed
-  judge(significance, c);
+    c.p = summary.mean == 0 ? 1 : 0;  // the same ratio on every seed
+  c.p_adjusted = c.p;
+  judge(c.p, significance, c);
   return c;
+}
+
+void judge_by_holm(std::span<PairedComparison> comparisons, double significance) {
+  std::vector<PairedComparison*> tested;
+  std::vector<double> p;
+  for (PairedComparison& c : comparisons) {
+    const bool same = c.a_lower == 0 && c.b_lower == 0;
+    if (c.pairs < kLeastPairs || same) continue;
+    tested.push_back(&c);
+    p.push_back(c.p);
+  }
+  const std::vector<double> adjusted = holm_adjusted(p);
+  for (std::size_t k = 0; k < tested.size(); ++k) {
+    tested[k]->p_adjusted = adjusted[k];
+    judge(adjusted[k], significance, *tested[k]);
+  }
+}
+
+Better better_of(const MetricEntry& metric) {
+  if (metric.lower_is_better) return Better::lower;
+  const std::string_view name = metric.name, family = metric.family;
+  const bool score = family == "coverage" || name.starts_with("degeneracy_") || name == "real_time_factor";
+  return score ? Better::higher : Better::neither;
 }
 
 PairedComparison turned_around(const PairedComparison& comparison) {

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "metrics/evaluation.h"
+#include "metrics/registry.h"
 
 namespace tarmac::metrics {
 
@@ -30,6 +32,7 @@ struct PairedComparison {
   double ratio = 1;          ///< of a to b, geometric mean
   double low = 0, high = 0;  ///< 95 % interval of the ratio; 0 and infinity when too few
   double p = 1;              ///< two-sided, of the hypothesis ratio = 1
+  double p_adjusted = 1;     ///< by judge_by_holm: below the significance exactly when the difference is claimed
   Difference difference = Difference::too_few;
 };
 
@@ -37,8 +40,19 @@ struct PairedComparison {
 /// std::invalid_argument when they differ in length. `significance`: below this p a difference is called one.
 PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, double significance = 0.05);
 
+/// Judges comparisons that are read together, so that the chance of any false claim among them is `significance` at
+/// most (Holm 1979): the smallest p counts times n, the next times n - 1 and so on, never less than the one before.
+/// Those with too few pairs are not among the n, nor are those that are the same to the last bit on every seed (the
+/// test cannot claim them, whatever the level).
+void judge_by_holm(std::span<PairedComparison> comparisons, double significance = 0.05);
+
 /// The same comparison told of b against a.
 PairedComparison turned_around(const PairedComparison& comparison);
+
+/// Which way of a metric is the better one. The registry says it of errors; shares covered, detectors' scores and the
+/// real-time factor are better when higher; lengths, shares of degenerate sweeps and eigenvalues are neither.
+enum class Better : std::uint8_t { lower, higher, neither };
+Better better_of(const MetricEntry& metric);
 
 /// Every pair of estimators by one metric's headline row (causal, or final for a batch method); runs that are not ok
 /// are left out. With more than one pair of estimators `significance` is shared out by Holm's rule, which holds the

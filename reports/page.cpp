@@ -78,26 +78,32 @@ std::string base64(const std::string& bytes) {
   return out;
 }
 
-std::string assemble_page(const ReportInput& input, const Pictures& pictures) {
+std::string frame_page(const std::string& title, std::string_view style, const std::string& body,
+                       const std::string& data, std::string_view script) {
   std::string html = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   // The browser itself refuses whatever would leave the page.
   html +=
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
       "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n";
-  html += fmt::format("<title>{} · Tarmac</title>\n<style>\n", escape_html(input.title));
-  html += page_style();
-  html += "</style>\n</head>\n<body>\n" + header(input);
-  html += "<div id=\"legend\"><nav aria-label=\"Contents\"></nav><div class=\"bar\"></div></div>\n<main>\n";
-  for (const char* id : {"summary", "comparison", "findings", "top", "stills", "drift", "phase", "residuals", "deskew",
-                         "degeneracy", "timing", "outcome", "provenance"}) {
-    html += fmt::format("<section id=\"{}\"></section>\n", id);
-  }
-  html += "</main>\n<script type=\"application/json\" id=\"tarmac-data\">" + page_data(input, pictures) + "</script>\n";
-  html += "<script>\n";
-  html += page_script();
+  html += fmt::format("<title>{} · Tarmac</title>\n<style>\n", escape_html(title));
+  html += style;
+  html += "</style>\n</head>\n<body>\n" + body;
+  html += "<script type=\"application/json\" id=\"tarmac-data\">" + data + "</script>\n<script>\n";
+  html += script;
   html += "</script>\n</body>\n</html>\n";
   return html;
+}
+
+std::string assemble_page(const ReportInput& input, const Pictures& pictures) {
+  std::string body = header(input);
+  body += "<div id=\"legend\"><nav aria-label=\"Contents\"></nav><div class=\"bar\"></div></div>\n<main>\n";
+  for (const char* id : {"summary", "comparison", "findings", "top", "stills", "drift", "phase", "residuals", "deskew",
+                         "degeneracy", "timing", "outcome", "provenance"}) {
+    body += fmt::format("<section id=\"{}\"></section>\n", id);
+  }
+  body += "</main>\n";
+  return frame_page(input.title, page_style(), body, page_data(input, pictures), page_script());
 }
 
 }  // namespace tarmac::reports

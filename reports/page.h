@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "reports/offscreen_gl.h"
@@ -47,6 +48,10 @@ Pictures draw_pictures(const ReportInput& input, const core::Progress& progress,
 
 /// The whole page. It refers to nothing outside of itself.
 std::string assemble_page(const ReportInput& input, const Pictures& pictures);
+
+/// A document around a page's body, data block (safe inside a script element), style and script.
+std::string frame_page(const std::string& title, std::string_view style, const std::string& body,
+                       const std::string& data, std::string_view script);
 
 /// The page's data block as JSON, safe inside a script element. Its form is described in reports/README.md.
 std::string page_data(const ReportInput& input, const Pictures& pictures);

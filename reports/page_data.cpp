@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "metrics/degeneracy/rule.h"
-#include "metrics/registry.h"
 #include "reports/page.h"
 #include "reports/page_comparisons.h"
+#include "reports/page_json.h"
 #include "reports/page_series.h"
 
 namespace tarmac::reports {
@@ -26,15 +25,9 @@ bool is_of_truth(const std::string& series) {
   return kTruthSeries.contains(series) || series.starts_with("oracle_");
 }
 
-/// Six significant digits: finer than any line can show, and half the size. NaN is null.
-json number(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
-}
-
 json thinned(const std::vector<double>& values, std::size_t step) {
   json list = json::array();
-  for (std::size_t i = 0; i < values.size(); i += step) list.push_back(number(values[i]));
+  for (std::size_t i = 0; i < values.size(); i += step) list.push_back(page_number(values[i]));
   return list;
 }
 
@@ -73,10 +66,10 @@ json to_json(const metrics::PairedComparison& c) {
           {"b", c.b},
           {"pairs", c.pairs},
           {"a_lower", c.a_lower},
-          {"ratio", number(c.ratio)},
-          {"low", few ? json() : number(c.low)},
-          {"high", few ? json() : number(c.high)},
-          {"p", number(c.p)},
+          {"ratio", page_number(c.ratio)},
+          {"low", few ? json() : page_number(c.low)},
+          {"high", few ? json() : page_number(c.high)},
+          {"p", page_number(c.p)},
           {"difference", metrics::name_of(c.difference)}};
 }
 
@@ -85,9 +78,9 @@ json to_json(const metrics::Finding& finding) {
   for (const auto& entry : finding.evidence) {
     evidence.push_back({{"name", entry.name},
                         {"unit", entry.unit},
-                        {"value", entry.value ? number(*entry.value) : json()},
-                        {"low", entry.low ? number(*entry.low) : json()},
-                        {"high", entry.high ? number(*entry.high) : json()}});
+                        {"value", entry.value ? page_number(*entry.value) : json()},
+                        {"low", entry.low ? page_number(*entry.low) : json()},
+                        {"high", entry.high ? page_number(*entry.high) : json()}});
   }
   return {{"topic", finding.topic},
           {"verdict", metrics::name_of(finding.verdict)},
@@ -103,10 +96,10 @@ json comparison_table(const std::vector<ReportRun>& runs) {
 
 json to_json(const metrics::Row& row) {
   json out = {{"estimate", row.estimate}, {"metric", row.metric}, {"unit", row.unit}, {"status", row.status}};
-  out["value"] = row.value ? number(*row.value) : json();
+  out["value"] = row.value ? page_number(*row.value) : json();
   if (row.ci_low && row.ci_high) {
-    out["low"] = number(*row.ci_low);
-    out["high"] = number(*row.ci_high);
+    out["low"] = page_number(*row.ci_low);
+    out["high"] = page_number(*row.ci_high);
   }
   return out;
 }
@@ -156,23 +149,11 @@ void collect(const ReportInput& input, const ReportRun& run, const metrics::Eval
                        {"seed", evaluation.seed},
                        {"status", evaluation.status},
                        {"message", evaluation.message},
-                       {"coverage", number(evaluation.coverage)},
+                       {"coverage", page_number(evaluation.coverage)},
                        {"rows", rows},
                        {"series", series},
                        {"findings", findings},
                        {"log", log_of(input, run, evaluation.estimator)}});
-}
-
-json metric_table(const std::set<std::string>& names) {
-  json table = json::object();
-  for (const auto& name : names) {
-    const metrics::MetricEntry* const entry = metrics::find_metric(name);
-    if (!entry) continue;
-    table[name] = {
-        {"name", entry->name},           {"unit", entry->unit},       {"lower_is_better", entry->lower_is_better},
-        {"alignment", entry->alignment}, {"meaning", entry->meaning}, {"source", entry->source}};
-  }
-  return table;
 }
 
 json to_json(const Picture& picture) {
@@ -223,21 +204,6 @@ std::string command_of(const std::vector<ReportRun>& runs) {
     return text;
   }
   return "";
-}
-
-/// No "<" may stand in a script element's data: "</script>" would end it.
-std::string inside_script(const json& data) {
-  // Bytes that are no UTF-8 (an estimator's message may hold any) are shown as replacement characters.
-  const std::string text = data.dump(-1, ' ', /*ensure_ascii=*/false, json::error_handler_t::replace);
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
-  }
-  return out;
 }
 
 }  // namespace

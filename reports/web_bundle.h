@@ -1,4 +1,4 @@
-/// The page's script and style, bundled from reports/web when the library is built.
+/// Script and style of the report and of the comparison, bundled from reports/web when the library is built.
 #pragma once
 
 #include <string_view>
@@ -7,5 +7,7 @@ namespace tarmac::reports {
 
 std::string_view page_script();
 std::string_view page_style();
+std::string_view compare_script();
+std::string_view compare_style();
 
 }  // namespace tarmac::reports

@@ -25,8 +25,8 @@ struct Cell {
 
 /// What became of a cell. The second group differs from run to run.
 struct CellOutcome {
-  /// ok | not_initialised | failed | crashed | timed_out | out_of_memory | no_output | bad_output | not_simulated: an
-  /// answer. killed: somebody else ended it (SIGKILL): no answer, and run again by --resume.
+  /// ok | not_initialised | failed | crashed | timed_out | out_of_memory | no_output | bad_output | not_simulated |
+  /// not_scored: an answer. killed: somebody else ended it (SIGKILL): no answer, and run again by --resume.
   std::string status = "ok";
   std::string message;
   std::string recording_hash;  ///< empty: there was no recording

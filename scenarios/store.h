@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -18,11 +19,19 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "scenarios/cell.h"
 
 namespace tarmac::scenarios {
 
 inline constexpr int kStoreSchema = 1;
+
+/// The disk is full, or fails: nothing of what was being written is in the store, all that was there before is, and the
+/// store can be used on once there is room.
+class StoreFull : public core::InputError {
+ public:
+  using InputError::InputError;
+};
 
 /// What a store was made of and by; two stores can be merged when all of it is the same.
 struct StoreIdentity {
@@ -46,6 +55,18 @@ struct ResultFilter {
   std::vector<std::uint64_t> seeds;
   std::vector<Override> parameters;  ///< path and value, all of them must match
   std::vector<std::string> metrics;  ///< those to load; empty: all. Cells without them are there all the same
+};
+
+/// Cells that have the same values in some columns.
+struct CellGroup {
+  std::vector<std::string> by;                  ///< those values
+  std::map<std::string, std::size_t> statuses;  ///< cells by status; `pending` and `running` are among them
+  struct Metric {
+    std::vector<double> values;  ///< of the cells that have one, in order of insertion
+    std::string unit;
+    std::string missing;  ///< why one has none: "n/a: …"
+  };
+  std::vector<Metric> metrics;  ///< in the order asked for
 };
 
 class Store {
@@ -76,20 +97,33 @@ class Store {
   void release(const std::string& key);
   /// Records a claimed cell's outcome and metrics, in one transaction.
   void finish(const std::string& key, const CellOutcome& outcome, std::span<const MetricValue> metrics);
+  /// The same of many, in one transaction: for results that come in bulk. Cells that are pending are claimed by it.
+  void finish(std::span<const CellResult> results);
   /// Cells that are pending, in order of insertion.
   std::vector<std::string> pending() const;
 
   /// Finished cells, in order of case, estimator, seed; with the metrics that the filter names.
   std::vector<CellResult> results(const ResultFilter& filter) const;
-  /// Cells that are not finished.
+  /// Cells that are not finished, in order of insertion.
   std::vector<Cell> unfinished() const;
+  /// Those that match, with the status `pending` or `running`.
+  std::vector<CellResult> unfinished(const ResultFilter& filter) const;
+
+  /// All cells that match, finished or not, by columns (case, estimator, scenario, block, seed, world, status), sorted
+  /// by them; with the values of the metrics that the filter names, of the causal estimate where there is one. Throws
+  /// InputError for another column.
+  std::vector<CellGroup> groups(const ResultFilter& filter, const std::vector<std::string>& by) const;
+  /// The values that stand in one of those columns; or, of `metric` and `parameter`, the names that there are.
+  std::vector<std::string> distinct(const std::string& column) const;
 
   struct Table {
     std::vector<std::string> columns;
     std::vector<std::vector<std::optional<std::string>>> rows;  ///< empty = NULL
+    std::vector<std::vector<bool>> numbers;                     ///< whether a value is a number
   };
   /// A statement that only reads (SQLite's authoriser holds it to that); throws InputError with SQLite's message.
-  Table query(const std::string& sql) const;
+  /// `check` is called now and then meanwhile: what it throws ends the statement.
+  Table query(const std::string& sql, const std::function<void()>& check = {}) const;
   /// The deterministic columns of all cells and metrics, sorted: equal stores give equal bytes (numbers with 17
   /// digits).
   void dump(std::ostream& out) const;

@@ -114,6 +114,12 @@ std::size_t write_imu(const RigOptions& options, const std::vector<ImuSample>& s
 
 }  // namespace
 
+Workload workload_of(const ConfigNode& rig, Duration duration) {
+  const lidar::FiringTable firing = firing_table(read_rig(rig), 1);
+  const auto sweeps = static_cast<std::size_t>(std::max<std::int64_t>(0, firing.sweeps_until(Time(duration))));
+  return {sweeps, sweeps * static_cast<std::size_t>(firing.sweep(0).cycles) * firing.channels()};
+}
+
 void check(const SimulationInput& input) {
   sweeps_within(firing_table(read_setup(input).rig, input.seed), input);
 }

@@ -45,6 +45,12 @@ struct SimulationSummary {
   int threads = 1;              ///< that were used: as asked for, at most the processors there are
 };
 
+/// How much a drive is, before it is simulated.
+struct Workload {
+  std::size_t sweeps = 0, rays = 0;
+};
+Workload workload_of(const core::ConfigNode& rig, core::Duration duration);
+
 /// Throws InputError when simulate() would refuse the input.
 void check(const SimulationInput& input);
 

@@ -1,10 +1,10 @@
-// Bundles src/ into page.js and page.css beside this file. Called by the build in a copy of this folder.
+// Bundles src/ into page.{js,css} (report) and compare.{js,css} (comparison) beside this file. Called by the build in a copy of this folder.
 import { readFileSync } from "node:fs";
 import { build } from "esbuild";
 
 const licence = readFileSync("node_modules/uplot/LICENSE", "utf8").trim();
 await build({
-  entryPoints: { page: "src/main.js" },
+  entryPoints: { page: "src/main.js", compare: "src/compare.js" },
   outdir: ".",
   bundle: true,
   minify: true,

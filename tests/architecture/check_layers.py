@@ -39,12 +39,14 @@ HEAVY = [
     (re.compile(r"ceres/"), "Ceres", ["estimators"]),
     (re.compile(r"(pcl|pcl-\d)/"), "PCL", ["estimators"]),
     (re.compile(r"(OpenEXR|Imath|Imf)"), "OpenEXR", ["io/world"]),
+    (re.compile(r"sqlite3"), "SQLite", ["scenarios"]),
 ]
 SOURCES_ONLY = [
     (re.compile(r"vtk\w+(\.h|/)"), "VTK"),
     (re.compile(r"yaml-cpp/"), "yaml-cpp"),
-    (re.compile(r"nlohmann/"), "nlohmann json"),
+    (re.compile(r"nlohmann/(?!json_fwd)"), "nlohmann json"),
     (re.compile(r"CLI/"), "CLI11"),
+    (re.compile(r"sqlite3"), "SQLite"),
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
@@ -15,14 +17,32 @@ namespace fs = std::filesystem;
 
 class Child : public testing::Test {
  protected:
-  ChildResult run(const std::string& script, double timeout_s = 20) {
+  ChildRequest request(const std::string& script) {
     ChildRequest request;
     request.command = {"sh", "-c", script};
     request.working_folder = folder_.path();
     request.log_file = folder_.path() / "log.txt";
-    request.timeout_s = timeout_s;
+    request.limits.wall_s = 20;
     request.on_progress = [this](double fraction, const std::string& note) { progress_.emplace_back(fraction, note); };
-    return run_child(request);
+    return request;
+  }
+  ChildResult run(const std::string& script, double wall_s = 20) {
+    ChildRequest child = request(script);
+    child.limits.wall_s = wall_s;
+    return run_child(child);
+  }
+  /// Dead, or a zombie that nobody has reaped yet: it runs no more. Waits for it for a while.
+  static bool is_gone(pid_t process) {
+    std::string state;
+    for (int i = 0; i < 100; ++i) {
+      std::ifstream status("/proc/" + std::to_string(process) + "/stat");
+      std::string pid, name;
+      state.clear();
+      status >> pid >> name >> state;
+      if (state.empty() || state == "Z") return true;
+      usleep(20000);
+    }
+    return false;
   }
   std::string log() const {
     std::ostringstream text;
@@ -57,17 +77,49 @@ TEST_F(Child, ThatHangsIsEndedWithWhateverItStarted) {
   pid_t grandchild = 0;
   std::ifstream(folder_.path() / "grandchild") >> grandchild;
   ASSERT_GT(grandchild, 0);
-  // The grandchild is dead or a zombie nobody has reaped yet; it runs no more.
-  std::string state;
-  for (int i = 0; i < 100; ++i) {
-    std::ifstream status("/proc/" + std::to_string(grandchild) + "/stat");
-    std::string pid, name;
-    state.clear();
-    status >> pid >> name >> state;
-    if (state.empty() || state == "Z") break;
-    usleep(20000);
+  EXPECT_TRUE(is_gone(grandchild));
+}
+
+TEST_F(Child, ThatIsKilledFromOutsideIsToldFromOneThatCrashes) {
+  EXPECT_EQ(run("kill -KILL $$").end, ChildResult::End::killed);
+}
+
+TEST_F(Child, ThatUsesTooMuchMemoryIsEndedAndSoIsOneWhoseChildrenDo) {
+  // The second one does it in a grandchild.
+  const std::string eats = "exec python3 -c 'x = []\nwhile True: x.append(bytearray(1 << 20))'";
+  for (const std::string& script : {eats, "(" + eats + ") & wait; exit 0"}) {
+    ChildRequest request = this->request(script);
+    request.limits.memory_mb = 200;
+    const ChildResult result = run_child(request);
+    EXPECT_EQ(result.end, ChildResult::End::out_of_memory) << result.message << log();
+    EXPECT_THAT(result.message, HasSubstr("200 MB"));
   }
-  EXPECT_TRUE(state.empty() || state == "Z") << state;
+}
+
+TEST_F(Child, ThatUsesTooMuchProcessorTimeIsEnded) {
+  ChildRequest request = this->request("while :; do :; done");
+  request.limits.cpu_s = 1;
+  const ChildResult result = run_child(request);
+  EXPECT_EQ(result.end, ChildResult::End::timed_out);
+  EXPECT_THAT(result.message, HasSubstr("processor time"));
+  EXPECT_LT(result.cpu_s, 3);
+}
+
+TEST_F(Child, EndsWithTheProcessThatStartedIt) {
+  const fs::path pid_file = folder_.path() / "pid";
+  const pid_t parent = fork();
+  if (parent == 0) {
+    run("echo $$ > pid.part; mv pid.part pid; exec sleep 600", 0);
+    _exit(0);
+  }
+  for (int i = 0; i < 1000 && !fs::exists(pid_file); ++i) usleep(10000);
+  pid_t child = 0;
+  std::ifstream(pid_file) >> child;
+  ASSERT_GT(child, 0);
+  EXPECT_EQ(kill(child, 0), 0);
+  kill(parent, SIGKILL);
+  waitpid(parent, nullptr, 0);
+  EXPECT_TRUE(is_gone(child));
 }
 
 TEST_F(Child, ReportsProgressThroughItsOwnDescriptor) {

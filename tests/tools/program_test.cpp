@@ -63,7 +63,7 @@ class Program : public testing::Test {
     request.command = command(std::move(words));
     request.working_folder = folder_->path();
     request.log_file = path("log.txt");
-    request.timeout_s = 240;
+    request.limits.wall_s = 240;
     const ChildResult result = run_child(request);
     EXPECT_NE(result.end, ChildResult::End::timed_out);
     EXPECT_NE(result.end, ChildResult::End::signalled) << core::read_file(path("log.txt"));
@@ -295,7 +295,7 @@ TEST_F(Program, InterruptLeavesNothingThatIsTakenForWhole) {
                          "sleep 0.05; i=$((i+1)); done; sleep 0.3; kill -TERM $child; wait $child"};
   request.working_folder = folder_->path();
   request.log_file = path("stopped.log");
-  request.timeout_s = 60;
+  request.limits.wall_s = 60;
   const ChildResult result = run_child(request);
   EXPECT_EQ(result.code, 130) << core::read_file(path("stopped.log"));
   EXPECT_FALSE(fs::exists(path("stopped") / "provenance.json"));

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,19 +11,19 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <fstream>
 #include <sstream>
 #include <system_error>
 
+#include "tools/tarmac/child_start.h"
 #include "tools/tarmac/interrupt.h"
-
-extern char** environ;
 
 namespace tarmac::tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr int kProgressDescriptor = 3;
 constexpr int kPollMs = 50;
+constexpr int kFamilyEvery = 4;  // polls between two looks at what the child has started itself
 
 /// A pipe whose ends close themselves.
 struct Pipe {
@@ -45,52 +44,19 @@ struct Pipe {
   }
 };
 
-pid_t start(const ChildRequest& request, int progress_end, int& error) {
-  std::vector<std::string> words = request.command;
-  if (!request.progress_argument.empty()) {
-    words.push_back(request.progress_argument);
-    words.push_back(std::to_string(kProgressDescriptor));
-  }
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawnattr_init(&attributes);
-  // The log is named from our own working folder, so it is opened before the child changes to its own.
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, request.log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                   0644);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, progress_end, kProgressDescriptor);
-  posix_spawn_file_actions_addchdir_np(&actions, request.working_folder.c_str());
-  sigset_t defaults, none;
-  sigemptyset(&none);
-  sigemptyset(&defaults);
-  for (const int number : {SIGINT, SIGTERM, SIGPIPE}) sigaddset(&defaults, number);
-  posix_spawnattr_setsigdefault(&attributes, &defaults);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-
-  pid_t child = -1;
-  error = ::posix_spawnp(&child, argv[0], &actions, &attributes, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  return error == 0 ? child : -1;
-}
-
 /// Reads what the child has said of its progress; complete lines only.
 class ProgressReader {
  public:
   ProgressReader(int end, const ChildRequest& request) : end_(end), request_(request) {
     ::fcntl(end, F_SETFL, O_NONBLOCK);
   }
-  void wait_and_read() {
-    pollfd watched{open_ ? end_ : -1, POLLIN, 0};
-    ::poll(&watched, 1, kPollMs);
+  /// Waits for words, for the child's end (where `pidfd` tells of it), or for a moment.
+  void wait_and_read(int pidfd) {
+    pollfd watched[2] = {{open_ ? end_ : -1, POLLIN, 0}, {pidfd, POLLIN, 0}};
+    ::poll(watched, 2, kPollMs);
+    read();
+  }
+  void read() {
     char buffer[4096];
     ssize_t n = 0;
     while (open_ && (n = ::read(end_, buffer, sizeof buffer)) > 0) text_.append(buffer, static_cast<std::size_t>(n));
@@ -120,69 +86,131 @@ void end_group(pid_t child) {
   ::kill(child, SIGKILL);
 }
 
+double resident_mb(const std::string& pid) {
+  std::ifstream in("/proc/" + pid + "/statm");
+  double total = 0, resident = 0;
+  in >> total >> resident;
+  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1048576.0;
+}
+
+/// Of a process and all that it has started.
+double family_resident_mb(const std::string& pid) {
+  double sum_mb = resident_mb(pid);
+  std::error_code gone;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/" + pid + "/task", gone)) {
+    std::ifstream children(task.path() / "children");
+    for (std::string child; children >> child;) sum_mb += family_resident_mb(child);
+  }
+  return sum_mb;
+}
+
+/// Watches a child until it ends or breaks a limit.
+class Watch {
+ public:
+  Watch(const ChildRequest& request, const StartedChild& child, ProgressReader& progress)
+      : request_(request), child_(child), progress_(progress) {}
+  ~Watch() {
+    if (child_.pidfd >= 0) ::close(child_.pidfd);
+  }
+
+  void until_the_end() {
+    try {
+      for (int round = 1; ::wait4(child_.pid, &status_, WNOHANG, &usage_) == 0; ++round) {
+        throw_if_interrupted();
+        if (breaks_a_limit(round)) {
+          end_group(child_.pid);
+          ::wait4(child_.pid, &status_, 0, &usage_);
+          break;
+        }
+        progress_.wait_and_read(child_.pidfd);
+      }
+    } catch (...) {
+      end_group(child_.pid);
+      ::wait4(child_.pid, &status_, 0, &usage_);
+      throw;
+    }
+    // Whatever the child left running in its group ends with it; what it said last is still in the pipe.
+    ::kill(-child_.pid, SIGKILL);
+    progress_.read();
+  }
+
+  ChildResult result() const {
+    const auto seconds = [](const timeval& t) {
+      return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    ChildResult result;
+    result.wall_s = elapsed_s();
+    result.cpu_s = seconds(usage_.ru_utime) + seconds(usage_.ru_stime);
+    result.peak_memory_mb = static_cast<double>(usage_.ru_maxrss) / 1024.0;
+    const ChildLimits& limits = request_.limits;
+    const int signal = WIFSIGNALED(status_) ? WTERMSIG(status_) : 0;
+    // A burst between two looks shows in the end's account.
+    const bool burst = limits.memory_mb > 0 && result.peak_memory_mb > limits.memory_mb;
+    if (burst || broken_ != ChildResult::End::exited) {
+      result.end = burst ? ChildResult::End::out_of_memory : broken_;
+      result.message = result.end == ChildResult::End::timed_out
+                           ? fmt::format("timed out after {:g} s", limits.wall_s)
+                           : fmt::format("used more than {:g} MB of memory", limits.memory_mb);
+    } else if (signal != 0 && limits.cpu_s > 0 && (signal == SIGXCPU || result.cpu_s >= limits.cpu_s)) {
+      result.end = ChildResult::End::timed_out;
+      result.message = fmt::format("used more than {:g} s of processor time", limits.cpu_s);
+    } else if (signal != 0) {
+      result.end = signal == SIGKILL ? ChildResult::End::killed : ChildResult::End::signalled;
+      result.code = signal;
+      result.message = fmt::format("{}: signal {} ({})", signal == SIGKILL ? "killed from outside" : "crashed", signal,
+                                   ::strsignal(signal));
+    } else {
+      result.code = WEXITSTATUS(status_);
+      if (result.code != 0) result.message = fmt::format("ended with exit code {}", result.code);
+    }
+    return result;
+  }
+
+ private:
+  double elapsed_s() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+  bool breaks_a_limit(int round) {
+    const ChildLimits& limits = request_.limits;
+    if (limits.wall_s > 0 && elapsed_s() > limits.wall_s) broken_ = ChildResult::End::timed_out;
+    if (limits.memory_mb > 0) {
+      const std::string pid = std::to_string(child_.pid);
+      const double used_mb = round % kFamilyEvery == 0 ? family_resident_mb(pid) : resident_mb(pid);
+      if (used_mb > limits.memory_mb) broken_ = ChildResult::End::out_of_memory;
+    }
+    return broken_ != ChildResult::End::exited;
+  }
+
+  const ChildRequest& request_;
+  const StartedChild child_;
+  ProgressReader& progress_;
+  const Clock::time_point began_ = Clock::now();
+  int status_ = 0;
+  struct rusage usage_ {};
+  ChildResult::End broken_ = ChildResult::End::exited;
+};
+
 }  // namespace
 
 ChildResult run_child(const ChildRequest& request) {
-  ChildResult result;
   Pipe pipe;
-  const auto began = Clock::now();
-  int error = 0;
-  const pid_t child = start(request, pipe.write, error);
-  if (child < 0) {
+  const StartedChild child = start_child(request, pipe.write);
+  if (child.pid < 0) {
+    ChildResult result;
     result.end = ChildResult::End::not_started;
-    result.code = error;
-    result.message = fmt::format("{} cannot be started: {}", request.command.at(0), std::strerror(error));
+    result.code = child.error;
+    result.message = fmt::format("{} cannot be started: {}", request.command.at(0), std::strerror(child.error));
     return result;
   }
   Pipe::close(pipe.write);
-
   ProgressReader progress(pipe.read, request);
-  const auto elapsed_s = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
-  int status = 0;
-  struct rusage usage {};
-  bool timed_out = false;
-  try {
-    while (::wait4(child, &status, WNOHANG, &usage) == 0) {
-      throw_if_interrupted();
-      if (request.timeout_s > 0 && elapsed_s() > request.timeout_s) {
-        timed_out = true;
-        end_group(child);
-        ::wait4(child, &status, 0, &usage);
-        break;
-      }
-      progress.wait_and_read();
-    }
-  } catch (...) {
-    end_group(child);
-    ::wait4(child, &status, 0, &usage);
-    throw;
-  }
-  // Whatever the child left running in its group ends with it; what it said last is still in the pipe.
-  ::kill(-child, SIGKILL);
-  progress.wait_and_read();
-
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  result.wall_s = elapsed_s();
-  result.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  result.peak_memory_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
-  if (timed_out) {
-    result.end = ChildResult::End::timed_out;
-    result.message = fmt::format("timed out after {:g} s", request.timeout_s);
-  } else if (WIFSIGNALED(status)) {
-    result.end = ChildResult::End::signalled;
-    result.code = WTERMSIG(status);
-    result.message = fmt::format("crashed: signal {} ({})", result.code, ::strsignal(result.code));
-  } else {
-    result.code = WEXITSTATUS(status);
-    if (result.code != 0) result.message = fmt::format("ended with exit code {}", result.code);
-  }
-  return result;
+  Watch watch(request, child, progress);
+  watch.until_the_end();
+  return watch.result();
 }
 
-PrivateFolder::PrivateFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "tarmac-XXXXXX").string();
+PrivateFolder::PrivateFolder() : PrivateFolder(std::filesystem::temp_directory_path()) {}
+
+PrivateFolder::PrivateFolder(const std::filesystem::path& below) {
+  std::string pattern = (below / "tarmac-XXXXXX").string();
   if (!::mkdtemp(pattern.data())) {
     throw std::system_error(errno, std::generic_category(), "a private working folder cannot be made: " + pattern);
   }

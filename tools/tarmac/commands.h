@@ -43,7 +43,7 @@ int estimate_command(const EstimateArguments& arguments, const CommonArguments& 
 struct EvaluateArguments {
   std::vector<std::string> folders;
   std::string truth, estimate;  ///< the other form: two trajectory files
-  std::string align;              ///< of the two files; "" = se3
+  std::string align;            ///< of the two files; "" = se3
 };
 int evaluate_command(const EvaluateArguments& arguments, const CommonArguments& common);
 
@@ -52,6 +52,28 @@ struct ReportArguments {
   std::string out;
 };
 int report_command(const ReportArguments& arguments, const CommonArguments& common);
+
+struct SweepArguments {
+  std::string sweep;
+  std::string out;
+  std::vector<std::string> sets;
+  std::string config;
+  std::string shard;  ///< "i/n"; empty = all
+  std::string cache;  ///< empty = DIR/recordings
+  double cache_limit_gb = 20;
+  std::string estimator_program;
+  bool resume = false, rerun_failed = false, dry_run = false, fast = false;
+};
+int sweep_command(const SweepArguments& arguments, const CommonArguments& common);
+struct CompareArguments {
+  std::vector<std::string> folders;  ///< A and B; one alone: two estimators of it
+  std::string out, markdown;         ///< page and Markdown; "" = none
+  std::string a, b;                  ///< estimators
+  std::vector<std::string> metrics;
+  std::string case_name;
+};
+/// In tools/compare.
+int compare_command(const CompareArguments& arguments, const CommonArguments& common);
 
 int list_command(const std::string& kind, const CommonArguments& common);
 struct DescribeArguments {
@@ -67,8 +89,48 @@ struct TransferArguments {
 int import_command(const TransferArguments& arguments, const CommonArguments& common);
 int export_command(const TransferArguments& arguments, const CommonArguments& common);
 
+struct TableArguments {
+  std::string folder;
+  std::vector<std::string> by = {"case", "estimator"};
+  std::vector<std::string> metrics;  ///< empty: the headline ones
+  std::vector<std::string> scenarios, cases, estimators, statuses;
+  std::string seeds;               ///< "" = all
+  std::vector<std::string> where;  ///< "motion.peak=3"
+  std::string sort;                ///< a column's name
+  bool reverse = false;
+  bool cells = false;  ///< one line a cell
+  bool dump = false;
+  std::string csv;  ///< a file, or - for standard output
+};
+int table_command(const TableArguments& arguments, const CommonArguments& common);
+struct QueryArguments {
+  std::string folder, sql, csv;
+};
+int query_command(const QueryArguments& arguments, const CommonArguments& common);
+struct MergeArguments {
+  std::vector<std::string> folders;
+  std::string out;
+};
+int merge_command(const MergeArguments& arguments, const CommonArguments& common);
+
+struct GateArguments {
+  std::string folder;  ///< a sweep's
+  std::string gate;    ///< file, or its name
+  std::string junit, markdown;
+  std::string link;  ///< what the Markdown points to for more
+};
+/// Returns 1 when a row failed.
+int gate_command(const GateArguments& arguments, const CommonArguments& common);
+struct BaselineArguments {
+  std::vector<std::string> folders;
+  std::string out;
+  std::string gate;  ///< whose metrics to keep; "" = the headline metrics
+  bool allow_incomplete = false;
+};
+int baseline_update_command(const BaselineArguments& arguments, const CommonArguments& common);
+
 struct BenchArguments {
-  std::vector<std::string> benches;  ///< sim, estimators, metrics; empty = all
+  std::vector<std::string> benches;  ///< sim, estimators, metrics, store; empty = all
 };
 /// In tools/bench.
 int bench_command(const BenchArguments& arguments, const CommonArguments& common);

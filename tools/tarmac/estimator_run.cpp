@@ -94,8 +94,14 @@ Outcome outcome_of(const EstimatorRequest& request, const ChildResult& child, in
     case ChildResult::End::signalled:
       outcome.status = "crashed";
       break;
+    case ChildResult::End::killed:
+      outcome.status = "killed";
+      break;
     case ChildResult::End::timed_out:
       outcome.status = "timed_out";
+      break;
+    case ChildResult::End::out_of_memory:
+      outcome.status = "out_of_memory";
       break;
     case ChildResult::End::exited:
       outcome.status = child.code == 0 ? "ok" : "failed";
@@ -107,7 +113,8 @@ Outcome outcome_of(const EstimatorRequest& request, const ChildResult& child, in
 /// One run's inputs, laid out in a private folder: recording/ or input/, options.yaml, output/.
 class Workplace {
  public:
-  Workplace(const fs::path& recording_folder, const EstimatorRequest& request) {
+  Workplace(const fs::path& recording_folder, const EstimatorRequest& request, const fs::path& below)
+      : folder_(below.empty() ? fs::temp_directory_path() : below) {
     fs::create_directory(output());
     if (request.bundled) {
       lend_files(recording_folder, folder_.path() / "recording");
@@ -126,7 +133,8 @@ class Workplace {
 
 ChildRequest bundled_command(const EstimatorRequest& request, const EstimatorRunSettings& settings) {
   ChildRequest child;
-  child.command = {(program_folder() / "tarmac-estimate").string(),
+  const fs::path& given = settings.estimator_program;
+  child.command = {given.empty() ? (program_folder() / "tarmac-estimate").string() : fs::absolute(given).string(),
                    "--recording",
                    "recording",
                    "--estimator",
@@ -157,34 +165,6 @@ void check_bundled(const fs::path& output, Outcome& outcome) {
   }
 }
 
-Outcome run_one(const EstimatorRequest& request, const fs::path& recording_folder, const std::string& recording_hash,
-                const fs::path& target, const EstimatorRunSettings& settings, const Console& console) {
-  const Workplace place(recording_folder, request);
-  ChildRequest child =
-      request.bundled ? bundled_command(request, settings) : foreign_command(request.tool, place.path());
-  child.working_folder = place.path();
-  child.log_file = place.output() / "log.txt";
-  const core::Progress progress = console.progress(request.name);
-  child.on_progress = [&](double fraction, const std::string& note) { progress(std::min(fraction, 0.999), note); };
-  const ChildResult result = run_child(child);
-
-  Outcome outcome = outcome_of(request, result, request.bundled ? settings.threads : 0);
-  outcome.recording_hash = recording_hash;
-  if (request.bundled) {
-    check_bundled(place.output(), outcome);
-  } else {
-    adopt_foreign_output(request.name, request.tool, recording_folder, place.output(), result, outcome);
-  }
-  save_outcome(place.output(), outcome);
-  put_in_place(place.output(), target);
-  progress(1.0, outcome.status == "ok" ? fmt::format("{:.1f} s CPU", outcome.cpu_s) : outcome.status);
-  if (outcome.failed()) {
-    console.warn(fmt::format("{}: {}: {} (log: {})", request.name, outcome.status, outcome.message,
-                             (target / "log.txt").string()));
-  }
-  return outcome;
-}
-
 }  // namespace
 
 void ForeignTool::visit(core::OptionVisitor& v) {
@@ -192,6 +172,22 @@ void ForeignTool::visit(core::OptionVisitor& v) {
   v.choice("frame", frame, {"lidar", "body"}, "whose pose the program writes");
   v.choice("interpolation", interpolation, {"se3", "slerp", "hold"}, "what holds between two of its poses");
   v("timeout_s", timeout_s, "after which the program is ended", {.above = 0});
+}
+
+std::vector<core::ConfigNode> estimator_blocks(const scenarios::Scenario& scenario, const std::string& config,
+                                               const std::vector<scenarios::Override>& overrides) {
+  std::vector<core::ConfigNode> blocks;
+  if (!config.empty()) {
+    core::ConfigNode file = core::ConfigNode::load(config);
+    // A block of --config stands in for the scenario's of that name; what --set says holds for either.
+    for (const auto& [key, value] : overrides) {
+      if (key.starts_with("estimators.")) file.set(key, value);
+    }
+    file.allow_only({"estimators"});
+    blocks.push_back(file.child("estimators"));
+  }
+  blocks.push_back(scenario.estimators);
+  return blocks;
 }
 
 std::vector<EstimatorRequest> request_estimators(const std::string& list, const std::vector<core::ConfigNode>& blocks) {
@@ -228,6 +224,35 @@ std::string resolved_options(const EstimatorRequest& request) {
   return core::write_options(request.tool, 4);
 }
 
+Outcome run_one_estimator(const EstimatorRequest& request, const fs::path& recording_folder,
+                          const std::string& recording_hash, const fs::path& target,
+                          const EstimatorRunSettings& settings, const core::Progress& progress) {
+  const Workplace place(recording_folder, request, settings.work_folder);
+  ChildRequest child =
+      request.bundled ? bundled_command(request, settings) : foreign_command(request.tool, place.path());
+  child.limits = settings.limits;
+  if (!request.bundled) {
+    const double own_s = request.tool.timeout_s, all_s = settings.limits.wall_s;
+    child.limits.wall_s = all_s > 0 ? std::min(own_s, all_s) : own_s;
+  }
+  child.working_folder = place.path();
+  child.log_file = place.output() / "log.txt";
+  child.on_progress = [&](double fraction, const std::string& note) { progress(std::min(fraction, 0.999), note); };
+  const ChildResult result = run_child(child);
+
+  Outcome outcome = outcome_of(request, result, request.bundled ? settings.threads : 0);
+  outcome.recording_hash = recording_hash;
+  if (request.bundled) {
+    check_bundled(place.output(), outcome);
+  } else {
+    adopt_foreign_output(request.name, request.tool, recording_folder, place.output(), result, outcome);
+  }
+  save_outcome(place.output(), outcome);
+  put_in_place(place.output(), target);
+  progress(1.0, outcome.status == "ok" ? fmt::format("{:.1f} s CPU", outcome.cpu_s) : outcome.status);
+  return outcome;
+}
+
 std::vector<Outcome> run_estimators(const std::vector<EstimatorRequest>& requests, const fs::path& recording_folder,
                                     const fs::path& folder, const EstimatorRunSettings& settings,
                                     const Console& console) {
@@ -236,7 +261,13 @@ std::vector<Outcome> run_estimators(const std::vector<EstimatorRequest>& request
   const std::string hash = core::Recording::open(recording_folder).hash();
   std::vector<Outcome> outcomes;
   for (const EstimatorRequest& request : requests) {
-    outcomes.push_back(run_one(request, recording_folder, hash, folder / request.name, settings, console));
+    const Outcome outcome = run_one_estimator(request, recording_folder, hash, folder / request.name, settings,
+                                              console.progress(request.name));
+    if (outcome.failed()) {
+      console.warn(fmt::format("{}: {}: {} (log: {})", request.name, outcome.status, outcome.message,
+                               (folder / request.name / "log.txt").string()));
+    }
+    outcomes.push_back(outcome);
   }
   return outcomes;
 }

@@ -10,6 +10,8 @@
 #include "core/diagnostics.h"
 #include "core/recording.h"
 #include "estimators/estimator.h"
+#include "scenarios/scenario.h"
+#include "tools/tarmac/child.h"
 #include "tools/tarmac/console.h"
 #include "tools/tarmac/outcome.h"
 
@@ -31,6 +33,10 @@ struct EstimatorRequest {
   core::ConfigNode options;
 };
 
+/// The `estimators:` blocks of a --config file (when there is one) and of the scenario, what --set says in both.
+std::vector<core::ConfigNode> estimator_blocks(const scenarios::Scenario& scenario, const std::string& config,
+                                               const std::vector<scenarios::Override>& overrides);
+
 /// Estimators by the names in `list` ("a,b", or "all" for every bundled one and every foreign one that is configured).
 /// `blocks` are the `estimators:` blocks of the scenario and of --config, later ones first. Validates all options.
 /// Throws InputError.
@@ -42,7 +48,15 @@ std::string resolved_options(const EstimatorRequest& request);
 struct EstimatorRunSettings {
   int threads = 1;
   std::string diagnostics = "full";
+  ChildLimits limits = {};                       ///< a foreign tool's own timeout holds beside them
+  std::filesystem::path work_folder = {};        ///< where private folders are made; empty: the system's place
+  std::filesystem::path estimator_program = {};  ///< empty: the tarmac-estimate beside this program
 };
+
+/// Runs one; its results become the folder `target`, put in place whole.
+Outcome run_one_estimator(const EstimatorRequest& request, const std::filesystem::path& recording_folder,
+                          const std::string& recording_hash, const std::filesystem::path& target,
+                          const EstimatorRunSettings& settings, const core::Progress& progress);
 
 /// Runs them one after the other; results go to `folder`/<name>/, each put in place whole. Earlier results of the same
 /// estimators are removed first.

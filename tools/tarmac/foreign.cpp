@@ -40,7 +40,6 @@ ChildRequest foreign_command(const ForeignTool& tool, const fs::path& workplace)
     }
     child.command.push_back(word);
   }
-  child.timeout_s = tool.timeout_s;
   return child;
 }
 

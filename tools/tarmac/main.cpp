@@ -25,6 +25,13 @@ struct Arguments {
   DescribeArguments describe;
   TransferArguments transfer;
   BenchArguments bench;
+  TableArguments table;
+  QueryArguments query;
+  MergeArguments merge;
+  SweepArguments sweep;
+  GateArguments gate;
+  BaselineArguments baseline;
+  CompareArguments compare;
   std::string list_kind;
   std::function<int()> chosen;
 };
@@ -62,7 +69,106 @@ void add_estimator_options(CLI::App* command, std::string& estimators, std::stri
       ->check(CLI::IsMember({"none", "system", "full"}));
 }
 
+void add_store_commands(CLI::App& app, Arguments& a) {
+  CLI::App* table = add(app, a, "table", "the cells of a sweep as a table: how they ended and what was measured",
+                        [&a] { return table_command(a.table, a.common); });
+  table->add_option("folder", a.table.folder, "folder of a sweep")->required();
+  const auto list = [&](const char* name, std::vector<std::string>& values, const char* what) {
+    return table->add_option(name, values, what)->delimiter(',')->allow_extra_args(false);
+  };
+  list("--by", a.table.by, "columns that make a line: case, estimator, scenario, block, seed, world, status");
+  list("--metrics", a.table.metrics, "which metrics, separated by commas");
+  list("--scenario", a.table.scenarios, "only these");
+  // Names of cases may hold commas.
+  table->add_option("--case", a.table.cases, "only this (repeatable)")->allow_extra_args(false);
+  list("-e,--estimator", a.table.estimators, "only these");
+  list("--status", a.table.statuses, "only cells that ended so, or are pending or running");
+  table->add_option("--seed", a.table.seeds, "only this seed, or a range such as 1..3");
+  table->add_option("--where", a.table.where, "only cells with that parameter: motion.peak=3 (repeatable)")
+      ->allow_extra_args(false);
+  table->add_option("--sort", a.table.sort, "column that lines are sorted by, lowest first");
+  table->add_flag("--reverse", a.table.reverse, "the other way round");
+  table->add_flag("--cells", a.table.cells, "one line a cell");
+  table->add_flag("--dump", a.table.dump, "all that is the same whenever and wherever the sweep runs, sorted");
+  table->add_option("--csv", a.table.csv, "write the table there as CSV (- for standard output)");
+
+  CLI::App* query = add(app, a, "query", "ask the store of a sweep in SQL (reading only)",
+                        [&a] { return query_command(a.query, a.common); });
+  query->add_option("folder", a.query.folder, "folder of a sweep")->required();
+  query->add_option("select", a.query.sql, "such as: select * from results where metric = 'ate_se3_rmse_m'")
+      ->required();
+  query->add_option("--csv", a.query.csv, "write the rows there as CSV (- for standard output)");
+
+  CLI::App* merge =
+      add(app, a, "merge", "the stores of a sweep's shards as one", [&a] { return merge_command(a.merge, a.common); });
+  merge->add_option("folders", a.merge.folders, "folders of the shards")->required();
+  merge->add_option("-o,--out", a.merge.out, "folder for the whole sweep")->required();
+}
+
+void add_sweep_command(CLI::App& app, Arguments& a) {
+  CLI::App* sweep = add(app, a, "sweep", "run the cells of a sweep file into a store",
+                        [&a] { return sweep_command(a.sweep, a.common); });
+  sweep->add_option("sweep", a.sweep.sweep, "sweep file, or its name")->required();
+  sweep->add_option("-o,--out", a.sweep.out, "folder of the store");
+  sweep->add_option("--jobs", a.common.jobs, "cells at once, one thread each (default: all cores)")
+      ->check(CLI::Range(1, 1024));
+  sweep->add_flag("--resume", a.sweep.resume, "go on with a store that is there: run what is not finished");
+  sweep->add_flag("--rerun-failed", a.sweep.rerun_failed, "the same, and what failed once more");
+  sweep->add_flag("--dry-run", a.sweep.dry_run, "list the cells with estimates of time and disk; run nothing");
+  sweep->add_option("--shard", a.sweep.shard, "I/N: the I-th of N parts; `tarmac merge` makes one store of them");
+  sweep->add_option("--set", a.sweep.sets, "set a field in all blocks: duration_s=5 (repeatable)")
+      ->allow_extra_args(false);
+  sweep->add_option("--config", a.sweep.config, "YAML file with an `estimators:` block");
+  sweep->add_option("--cache", a.sweep.cache, "folder of recordings, which several sweeps may share (default: in DIR)");
+  sweep
+      ->add_option("--cache-limit-gb", a.sweep.cache_limit_gb,
+                   "room that recordings may take; 0 = no limit (default 20)")
+      ->check(CLI::NonNegativeNumber);
+  sweep
+      ->add_option("--estimator-program", a.sweep.estimator_program,
+                   "another build's tarmac-estimate: its estimators, this build's simulator and metrics")
+      ->check(CLI::ExistingFile);
+  sweep->add_flag("--fast", a.sweep.fast, "lift the pinned instruction set of the ray tracer");
+}
+
+void add_gate_commands(CLI::App& app, Arguments& a) {
+  CLI::App* gate = add(app, a, "gate", "hold a sweep's results to a gate file; exit code 1 when a row fails",
+                       [&a] { return gate_command(a.gate, a.common); });
+  gate->add_option("folder", a.gate.folder, "folder of a sweep")->required();
+  gate->add_option("--gate", a.gate.gate, "gate file, or its name")->required();
+  gate->add_option("--junit", a.gate.junit, "write JUnit XML");
+  gate->add_option("--markdown", a.gate.markdown, "write Markdown for a pull request");
+  gate->add_option("--link", a.gate.link, "address of the whole report, for the Markdown");
+
+  CLI::App* baseline = app.add_subcommand("baseline", "what gates hold results to");
+  baseline->require_subcommand(1);
+  CLI::App* update = add(*baseline, a, "update", "write a baseline from sweeps' results, and say what changes",
+                         [&a] { return baseline_update_command(a.baseline, a.common); });
+  update->add_option("folders", a.baseline.folders, "folders of sweeps")->required();
+  update->add_option("-o,--out", a.baseline.out, "baseline file")->required();
+  update->add_option("--gate", a.baseline.gate, "gate file, or its name: the metrics to keep (default: the main ones)");
+  update->add_flag("--allow-incomplete", a.baseline.allow_incomplete,
+                   "leave out cells that failed or are not finished");
+}
+
+void add_compare_command(CLI::App& app, Arguments& a) {
+  CLI::App* compare = add(app, a, "compare", "two builds, or two estimators, in pairs over the same seeds",
+                          [&a] { return compare_command(a.compare, a.common); });
+  compare->add_option("folders", a.compare.folders, "A and B: a sweep's folder or a run's; one alone with --a and --b")
+      ->required()
+      ->expected(1, 2);
+  compare->add_option("-o,--out", a.compare.out, "the page to write");
+  compare->add_option("--markdown", a.compare.markdown, "Markdown to write, for a pull request");
+  compare->add_option("--a", a.compare.a, "estimator of A (default: each one against its namesake)");
+  compare->add_option("--b", a.compare.b, "estimator of B");
+  compare->add_option("--metrics", a.compare.metrics, "these alone, separated by commas (default: all)")
+      ->delimiter(',');
+  compare->add_option("--case", a.compare.case_name, "this case alone");
+}
+
 void add_commands(CLI::App& app, Arguments& a) {
+  add_gate_commands(app, a);
+
   CLI::App* run = add(app, a, "run", "simulate a scenario, run estimators, evaluate them and write the report",
                       [&a] { return run_command(a.scenario, a.common); });
   add_scenario_options(run, a, false);
@@ -98,6 +204,8 @@ void add_commands(CLI::App& app, Arguments& a) {
   report->add_option("folders", a.report.folders, "folders of runs")->required();
   report->add_option("-o,--out", a.report.out, "the page to write")->required();
 
+  add_compare_command(app, a);
+
   CLI::App* list = add(app, a, "list", "what there is", [&a] { return list_command(a.list_kind, a.common); });
   list->add_option(
       "kind", a.list_kind,
@@ -114,7 +222,11 @@ void add_commands(CLI::App& app, Arguments& a) {
 
   CLI::App* bench = add(app, a, "bench", "what simulating, estimating and scoring cost on this machine",
                         [&a] { return bench_command(a.bench, a.common); });
-  bench->add_option("benches", a.bench.benches, "sim, estimators, metrics (default: all)");
+  bench->add_option("benches", a.bench.benches, "sim, estimators, metrics, store (default: all)");
+
+  add_store_commands(app, a);
+
+  add_sweep_command(app, a);
 
   for (const bool importing : {true, false}) {
     CLI::App* transfer = importing ? add(app, a, "import", "make a recording (or a TUM file) from another format",

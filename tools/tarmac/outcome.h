@@ -8,7 +8,8 @@ namespace tarmac::tools {
 
 struct Outcome {
   std::string estimator;
-  std::string status = "ok";  ///< ok | not_initialised | failed | crashed | timed_out | no_output | bad_output
+  /// ok | not_initialised | failed | crashed | killed | timed_out | out_of_memory | no_output | bad_output
+  std::string status = "ok";
   std::string message;
   double wall_s = 0, cpu_s = 0, peak_memory_mb = 0;
   int threads = 1;

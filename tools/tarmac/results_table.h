@@ -7,6 +7,7 @@
 #include "metrics/evaluation.h"
 #include "tools/tarmac/layout.h"
 #include "tools/tarmac/outcome.h"
+#include "tools/tarmac/text_table.h"
 
 namespace tarmac::tools {
 

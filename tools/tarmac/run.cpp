@@ -32,22 +32,6 @@ struct Plan {
   }
 };
 
-std::vector<core::ConfigNode> estimator_blocks(const scenarios::Scenario& scenario, const std::string& config,
-                                               const std::vector<scenarios::Override>& overrides) {
-  std::vector<core::ConfigNode> blocks;
-  if (!config.empty()) {
-    core::ConfigNode file = core::ConfigNode::load(config);
-    // A block of --config stands in for the scenario's of that name; what --set says holds for either.
-    for (const auto& [key, value] : overrides) {
-      if (key.starts_with("estimators.")) file.set(key, value);
-    }
-    file.allow_only({"estimators"});
-    blocks.push_back(file.child("estimators"));
-  }
-  blocks.push_back(scenario.estimators);
-  return blocks;
-}
-
 /// Results of one seed and of several lie in one folder differently; mixing them, or seeds of different runs, would
 /// pool what does not belong together.
 void refuse_mixed_layouts(const Plan& plan) {

@@ -16,11 +16,11 @@ export function bestReference(data) {
   return sortRows(compared, end, true)[0];
 }
 
-/** Ends of a logarithmic axis that holds 1 and, as far as a factor of 20 goes, all intervals. */
-export function ratioAxis(comparisons) {
+/** Ends of a logarithmic axis that holds 1 and, as far as a factor of `most` goes, all intervals. */
+export function ratioAxis(comparisons, most = 20) {
   const ends = comparisons.flatMap((c) => [c.low, c.high, c.ratio]).filter((value) => isNumber(value) && value > 0);
-  const reach = Math.min(20, Math.max(1.25, ...ends.map((value) => Math.max(value, 1 / value)))) * 1.08;
-  const steps = reach > 6 ? [0.1, 0.2, 0.5, 1, 2, 5, 10] : reach > 2.4 ? [0.2, 0.5, 1, 2, 5] : [0.5, 0.8, 1, 1.25, 2];
+  const reach = Math.min(most, Math.max(1.25, ...ends.map((value) => Math.max(value, 1 / value)))) * 1.08;
+  const steps = reach > 60 ? [1e-3, 1e-2, 0.1, 1, 10, 100, 1000] : reach > 6 ? [0.1, 0.2, 0.5, 1, 2, 5, 10] : reach > 2.4 ? [0.2, 0.5, 1, 2, 5] : [0.5, 0.8, 1, 1.25, 2];
   return { low: 1 / reach, high: reach, ticks: steps.filter((tick) => tick > 1 / reach && tick < reach) };
 }
 

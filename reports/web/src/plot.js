@@ -16,7 +16,7 @@ export function wantsLog(lines) {
 }
 
 /**
- * lines: [{name, color (css variable), x, y, low?, high?, width?, dash?, dots?: points without a line}].
+ * lines: [{name, color (css variable), x, y, low?, high?, width?, dash?, dots?: points without a line, steps?: no points}].
  * options: {xLabel, yLabel, sync?, height, bare?: no label below,
  *   log?: "never" | "linear" at first | "log" at first | "outside": as setLog says; default: as the lines need,
  *   range?, logRange?: () => [low, high] of an axis that charts share,
@@ -107,7 +107,7 @@ export class Chart {
       const width = line.width ?? 1.6;
       series.push(line.dots
         ? { stroke: `${color}99`, width: 0, paths: () => null, points: { show: true, size: 3.5, fill: `${color}80`, width: 0 } }
-        : { stroke: color, width, dash: line.dash, points: { show: !line.dash && line.x.length < 60, size: 4, fill: color, width: 0 }, spanGaps: false });
+        : { stroke: color, width, dash: line.dash, points: { show: !line.dash && !line.steps && line.x.length < 60, size: 4, fill: color, width: 0 }, spanGaps: false });
       if (line.low) {
         const at = series.length;
         for (let k = 0; k < 2; ++k) series.push({ stroke: "transparent", width: 0, points: { show: false } });

@@ -72,14 +72,47 @@ function copyButton(text) {
   return button;
 }
 
-export function provenance(state) {
-  const blocks = state.data.provenance.map(({ folder, text }, i) => {
+/** "{a: {b: 1}}" as rows [path, value]; a value of several lines (options) gives a row a line. */
+function lines(text) {
+  const rows = flatten(parsed(text) ?? {}, "", []);
+  return rows.flatMap(([key, value]) => {
+    if (!value.includes("\n")) return [[key, value]];
+    let block = "";  // "kiss-icp:" and the indented lines below it
+    return value.split("\n").filter((line) => line.trim()).map((line) => {
+      if (!/^\s/.test(line)) block = line.replace(/:.*$/, "");
+      const [name, ...rest] = line.trim().split(":");
+      return [[key, block === name ? "" : block, name].filter(Boolean).join(" "), rest.join(":").trim()];
+    });
+  });
+}
+
+/** What two provenances do not share: [[name, in A, in B]]; times and the commands apart, which always differ. */
+export function differing(textA, textB) {
+  const [a, b] = [new Map(lines(textA)), new Map(lines(textB))];
+  const skipped = /^(made_at|command|simulate\.|recording$|truth$)/;
+  return [...new Set([...a.keys(), ...b.keys()])].filter((key) => !skipped.test(key) && a.get(key) !== b.get(key))
+    .map((key) => [key, a.get(key) ?? "", b.get(key) ?? ""]);
+}
+
+/** A table of what differs between the first runs of two folders; null when a side has no provenance. */
+export function differences(provenances) {
+  const [a, b] = provenances;
+  if (!parsed(a.text) || !parsed(b.text) || a.text === b.text) return null;
+  const rows = differing(a.text, b.text);
+  if (rows.length === 0) return el("p", {}, "Build, options and machine of the first runs are the same.");
+  return [el("p", { class: "reading" }, "What differs between the first runs of the two:"),
+    el("div", { class: "table-wrap" }, el("table", { class: "differing" }, el("thead", {}, el("tr", {}, ...["Field", "A", "B"].map((name) => el("th", { scope: "col" }, name)))),
+      el("tbody", {}, ...rows.map(([key, of_a, of_b]) => el("tr", {}, el("th", { scope: "row" }, key.replaceAll("_", " ")), el("td", {}, of_a || "–"), el("td", {}, of_b || "–"))))))];
+}
+
+export function provenance(state, { folded = false } = {}) {
+  const blocks = state.data.provenance.filter(({ text }) => text).map(({ folder, text }, i) => {
     const content = parsed(text);
     if (content === null) return el("pre", {}, text);
     const rows = flatten(content, "", []).filter(([key, value]) => key !== "command" && value !== "");
     const table = el("table", { class: "facts" }, el("tbody", {}, ...rows.map(([key, value]) =>
       el("tr", {}, el("th", { scope: "row" }, key.replaceAll("_", " ")), el("td", {}, value)))));
-    if (i === 0) return table;
+    if (i === 0 && !folded) return table;
     return el("details", {}, el("summary", {}, folder || `run ${i + 1}`), table);
   });
   const { command } = state.data;

@@ -1,0 +1,25 @@
+/// Ratios of paired values, by their logarithms: what comparisons and gates share.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace tarmac::metrics {
+
+/// log(a / b) of the pairs of which both values are above 0 and finite. Throws std::invalid_argument when the lists
+/// differ in length.
+std::vector<double> log_ratios(const std::vector<double>& a, const std::vector<double>& b);
+
+struct LogSummary {
+  std::size_t n = 0;
+  double mean = 0;   ///< 0 when empty
+  double sd = 0;     ///< with n - 1; 0 below two values
+  double error = 0;  ///< of the mean: sd / sqrt(n)
+};
+LogSummary summarise(const std::vector<double>& logs);
+
+/// Student's t with `n` - 1 degrees of freedom, n >= 2: the quantile, and the chance of a value above t.
+double student_quantile(std::size_t n, double probability);
+double student_above(std::size_t n, double t);
+
+}  // namespace tarmac::metrics
