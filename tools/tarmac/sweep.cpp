@@ -98,6 +98,12 @@ void say_start(const scenarios::StoreStart& start, const Console& console) {
         fmt::format("{} cells are done ({} of them failed), {} to go", start.done, start.failed, start.pending));
 }
 
+int stop_for_want_of_room(const core::InputError& error, const Console& console) {
+  console.warn(fmt::format("error: {}\nthe sweep stops; finished cells are kept. Make room, then go on with --resume",
+                           error.what()));
+  return 3;
+}
+
 /// 3 where some cells failed or were lost, whichever run of the store it was.
 int exit_code_of(const scenarios::Store& store) {
   scenarios::ResultFilter outcomes_only;
@@ -130,9 +136,9 @@ int sweep_command(const SweepArguments& arguments, const CommonArguments& common
   try {
     summary = execute(plan, store, execute_settings, console);
   } catch (const NoRoom& error) {
-    console.warn(fmt::format("error: {}\nthe sweep stops; finished cells are kept. Make room, then go on with --resume",
-                             error.what()));
-    return 3;
+    return stop_for_want_of_room(error, console);
+  } catch (const scenarios::StoreFull& error) {
+    return stop_for_want_of_room(error, console);
   }
   link_latest(out);
   console.say(
