@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "metrics/non_inferiority.h"
 #include "metrics/paired_logs.h"
 
 namespace tarmac::metrics {
@@ -99,17 +100,18 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
 }
 
 void judge_by_holm(std::span<PairedComparison> comparisons, double significance) {
-  std::vector<PairedComparison*> order;
+  std::vector<PairedComparison*> tested;
+  std::vector<double> p;
   for (PairedComparison& c : comparisons) {
     const bool same = c.a_lower == 0 && c.b_lower == 0;
-    if (c.pairs >= kLeastPairs && !same) order.push_back(&c);
+    if (c.pairs < kLeastPairs || same) continue;
+    tested.push_back(&c);
+    p.push_back(c.p);
   }
-  std::stable_sort(order.begin(), order.end(), [](const auto* x, const auto* y) { return x->p < y->p; });
-  double adjusted = 0;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    adjusted = std::min(1.0, std::max(adjusted, static_cast<double>(order.size() - k) * order[k]->p));
-    order[k]->p_adjusted = adjusted;
-    judge(adjusted, significance, *order[k]);
+  const std::vector<double> adjusted = holm_adjusted(p);
+  for (std::size_t k = 0; k < tested.size(); ++k) {
+    tested[k]->p_adjusted = adjusted[k];
+    judge(adjusted[k], significance, *tested[k]);
   }
 }
 

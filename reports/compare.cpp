@@ -141,7 +141,7 @@ std::string words_of(const CompareRow& row) {
     case CompareVerdict::different:
       return row.comparison.ratio < 1 ? "lower" : "higher";
     case CompareVerdict::no_difference:
-      return row.comparison.p < 0.05 ? "not settled: one of many" : "no significant difference";
+      return row.comparison.p < 0.05 ? "not settled" : "not significant";
     case CompareVerdict::identical:
       return "identical";
     case CompareVerdict::too_few:

@@ -32,8 +32,9 @@ enum class CompareVerdict : std::uint8_t {
   no_ratio,       ///< a value is 0 or of the other sign: nothing to take a ratio of
 };
 const char* name_of(CompareVerdict verdict);  ///< "better", "no_difference"
-/// For people: "no significant difference", "too few seeds (2)".
 struct CompareRow;
+/// For people: "not significant", "too few seeds (2)"; "not settled" is what would be significant by itself, but not
+/// among all that were looked at.
 std::string words_of(const CompareRow& row);
 
 /// One metric of one method on one case, over seeds.

@@ -104,7 +104,7 @@ std::string compare_markdown(const CompareInput& input, const std::string& link)
   if (!link.empty()) text += fmt::format("The page: {}\n\n", cell(link));
   const auto significant = significant_rows(input), others = other_rows(input);
   if (!significant.empty()) text += table(significant) + "\n";
-  if (!others.empty()) text += folded(fmt::format("No significant difference ({})", others.size()), table(others));
+  if (!others.empty()) text += folded(fmt::format("Not significant ({})", others.size()), table(others));
   std::vector<const CompareRow*> costs, rest;
   for (const CompareRow& row : input.rows) {
     if (row.cost)

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/random.h"
@@ -105,6 +106,85 @@ TEST(CompareAll, PairsSeedsAndLeavesOutFailedRuns) {
   EXPECT_NEAR(comparisons[0].ratio, 0.9, 1e-12);
   EXPECT_EQ(comparisons[0].difference, Difference::lower);
   EXPECT_NE(in_words(comparisons[0]).find("0.9 times b's"), std::string::npos);
+}
+
+PairedComparison with_p(double p, double ratio = 2) {
+  PairedComparison c;
+  c.pairs = 5;
+  c.b_lower = 5;
+  c.p = c.p_adjusted = p;
+  c.ratio = ratio;
+  return c;
+}
+
+/// By hand: sorted p are 0.001, 0.012, 0.02, 0.03 and count 4, 3, 2, 1 times: 0.004, 0.036, 0.04, and 0.03, which is
+/// raised to the 0.04 before it.
+TEST(JudgeByHolm, AdjustsEachValueByHowManyAreLeft) {
+  std::vector<PairedComparison> list = {with_p(0.02), with_p(0.001), with_p(0.03), with_p(0.012, 0.5)};
+  judge_by_holm(list);
+  EXPECT_DOUBLE_EQ(list[1].p_adjusted, 0.004);
+  EXPECT_DOUBLE_EQ(list[3].p_adjusted, 0.036);
+  EXPECT_DOUBLE_EQ(list[0].p_adjusted, 0.04);
+  EXPECT_DOUBLE_EQ(list[2].p_adjusted, 0.04);
+  EXPECT_EQ(list[1].difference, Difference::higher);
+  EXPECT_EQ(list[3].difference, Difference::lower);
+}
+
+TEST(JudgeByHolm, WhatFailsHoldsBackAllThatFollow) {
+  // 0.03 counts twice and fails; 0.04 alone would not.
+  std::vector<PairedComparison> list = {with_p(0.04), with_p(0.03)};
+  judge_by_holm(list);
+  EXPECT_DOUBLE_EQ(list[1].p_adjusted, 0.06);
+  EXPECT_DOUBLE_EQ(list[0].p_adjusted, 0.06);
+  EXPECT_EQ(list[0].difference, Difference::not_significant);
+  EXPECT_EQ(list[1].difference, Difference::not_significant);
+}
+
+TEST(JudgeByHolm, TooFewAndIdenticalOnesAreNotCounted) {
+  std::vector<PairedComparison> list = {with_p(0.03)};
+  for (int k = 0; k < 10; ++k) {
+    list.push_back(compare_paired({1, 2, 3}, {1, 2, 3}));
+    list.push_back(compare_paired({1, 2}, {2, 4}));
+  }
+  judge_by_holm(list);
+  EXPECT_DOUBLE_EQ(list[0].p_adjusted, 0.03);
+  EXPECT_EQ(list[0].difference, Difference::higher);
+  EXPECT_EQ(list[1].difference, Difference::not_significant);
+  EXPECT_EQ(list[2].difference, Difference::too_few);
+}
+
+/// 20 metrics of 2 alike builds on 5 seeds: a page with any false claim is to be one in twenty.
+TEST(JudgeByHolm, HoldsTheChanceOfAnyFalseClaim) {
+  constexpr int kPages = 2000, kRows = 20;
+  int pages_with_claims = 0;
+  for (int page = 0; page < kPages; ++page) {
+    const core::RandomStream stream(static_cast<std::uint64_t>(page), "test/holm");
+    std::vector<PairedComparison> rows;
+    for (std::uint64_t row = 0; row < kRows; ++row) {
+      std::vector<double> a, b;
+      for (std::uint64_t s = 0; s < 5; ++s) {
+        a.push_back(std::exp(0.1 * stream.normal(100 * row + s, 0)));
+        b.push_back(std::exp(0.1 * stream.normal(100 * row + s, 1)));
+      }
+      rows.push_back(compare_paired(a, b));
+    }
+    judge_by_holm(rows);
+    pages_with_claims += std::any_of(rows.begin(), rows.end(), [](const PairedComparison& c) {
+      return c.difference == Difference::lower || c.difference == Difference::higher;
+    });
+  }
+  const double sigma = std::sqrt(kPages * 0.05 * 0.95);
+  EXPECT_LT(pages_with_claims, kPages * 0.05 + 4 * sigma);
+  EXPECT_GT(pages_with_claims, kPages * 0.05 - 5 * sigma) << "no test at all would hold the chance too";
+}
+
+TEST(BetterOf, KnowsErrorsScoresAndWhatIsNeither) {
+  EXPECT_EQ(better_of(*find_metric("deskew_error_rms_m")), Better::lower);
+  EXPECT_EQ(better_of(*find_metric("coverage_percent")), Better::higher);
+  EXPECT_EQ(better_of(*find_metric("degeneracy_solve_6dof_f1")), Better::higher);
+  EXPECT_EQ(better_of(*find_metric("real_time_factor")), Better::higher);
+  EXPECT_EQ(better_of(*find_metric("path_length_m")), Better::neither);
+  EXPECT_EQ(better_of(*find_metric("oracle_degenerate_percent")), Better::neither);
 }
 
 /// p of (a, b) is about 0.04: enough alone, not as the smallest of three.

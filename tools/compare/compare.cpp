@@ -23,13 +23,6 @@ core::Progress part(const core::Progress& whole, double from, double to) {
   };
 }
 
-std::vector<std::string> names_of(const ComparedFolder& folder, std::string ComparedRun::*name) {
-  std::vector<std::string> names;
-  for (const ComparedRun& run : folder.runs)
-    if (std::find(names.begin(), names.end(), run.*name) == names.end()) names.push_back(run.*name);
-  return names;
-}
-
 [[noreturn]] void not_there(const char* what, const std::string& name, const std::string& where,
                             const std::vector<std::string>& names) {
   const std::string guess = core::did_you_mean(name, names);
@@ -40,10 +33,10 @@ std::vector<std::string> names_of(const ComparedFolder& folder, std::string Comp
                                      list.empty() ? "none" : list));
 }
 
-void check_estimator(const ComparedFolder& folder, const std::string& estimator) {
-  const auto names = names_of(folder, &ComparedRun::estimator);
-  if (estimator.empty() || std::find(names.begin(), names.end(), estimator) != names.end()) return;
-  not_there("estimator", estimator, folder.path.string(), names);
+void check_is_there(const char* what, const std::string& name, const ComparedFolder& folder,
+                    const std::vector<std::string>& names) {
+  if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) return;
+  not_there(what, name, folder.path.string(), names);
 }
 
 /// A metric is known when the registry or any run has it: a newer build's metrics are as good.
@@ -63,14 +56,6 @@ void check_metrics(const ComparedFolder& a, const ComparedFolder& b, const std::
                           ? ""
                           : fmt::format(" (did you mean '{}'?)", core::did_you_mean(name, names))));
   }
-}
-
-void keep_case(ComparedFolder& folder, const std::string& case_name) {
-  if (case_name.empty()) return;
-  const auto names = names_of(folder, &ComparedRun::case_name);
-  if (std::find(names.begin(), names.end(), case_name) == names.end())
-    not_there("case", case_name, folder.path.string(), names);
-  std::erase_if(folder.runs, [&](const ComparedRun& run) { return run.case_name != case_name; });
 }
 
 /// The last parts of two paths from where they differ: "main/out" and "branch/out".
@@ -127,22 +112,24 @@ void add_unfinished(const char* kind, const ComparedFolder& folder, std::vector<
 }  // namespace
 
 reports::CompareInput compare_folders(const CompareSettings& settings, const core::Progress& progress) {
-  ComparedFolder a = read_compared_folder(settings.a, part(progress, 0, 0.3));
-  ComparedFolder b = read_compared_folder(settings.b, part(progress, 0.3, 0.6));
-  check_estimator(a, settings.estimator_a);
-  check_estimator(b, settings.estimator_b);
+  const ComparedFolder a = read_compared_folder(
+      settings.a, {settings.case_name, settings.estimator_a, settings.metrics}, part(progress, 0, 0.3));
+  const ComparedFolder b = read_compared_folder(
+      settings.b, {settings.case_name, settings.estimator_b, settings.metrics}, part(progress, 0.3, 0.6));
+  check_is_there("estimator", settings.estimator_a, a, a.estimators);
+  check_is_there("estimator", settings.estimator_b, b, b.estimators);
+  check_is_there("case", settings.case_name, a, a.cases);
+  check_is_there("case", settings.case_name, b, b.cases);
   check_metrics(a, b, settings.metrics);
-  keep_case(a, settings.case_name);
-  keep_case(b, settings.case_name);
   Pairing pairing = pair_runs(a, b, {settings.estimator_a, settings.estimator_b, settings.metrics});
   reports::CompareInput input;
   label_sides(settings, a, b, input);
   if (settings.drives) {
-    input.drives = compare_drives(pairing, kMostDrives, part(progress, 0.6, 1));
+    input.drives = compare_drives(pairing, kMostDrives, part(progress, 0.6, 1), input.missing);
     input.drives_left_out = pairing.pairs.size() - std::min(pairing.pairs.size(), kMostDrives);
   }
   input.rows = std::move(pairing.rows);
-  input.missing = std::move(pairing.missing);
+  input.missing.insert(input.missing.begin(), pairing.missing.begin(), pairing.missing.end());
   add_unfinished("unfinished in A", a, input.missing);
   add_unfinished("unfinished in B", b, input.missing);
   input.same_recordings = pairing.same_recordings;

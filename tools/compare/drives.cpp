@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace tarmac::tools {
 namespace {
@@ -36,18 +37,31 @@ void add_path(const metrics::Evaluation& evaluation, reports::CompareDrive& driv
   drive.path_y_m = path->y;
 }
 
-reports::CompareDrive compare_drive(const PairedRuns& paired, bool located) {
+bool has_evaluation(const ComparedRun& run) {
+  return std::filesystem::is_regular_file(run.folder / "evaluation.json");
+}
+
+reports::CompareDrive compare_drive(const PairedRuns& paired, bool located,
+                                    std::vector<reports::CompareMissing>& missing) {
   reports::CompareDrive drive;
   drive.case_name = paired.case_name;
   drive.estimator_a = paired.estimator_a;
   drive.estimator_b = paired.estimator_b;
-  drive.seeds = paired.seeds.size();
   drive.located = located;
   std::vector<metrics::Evaluation> a, b;
+  std::vector<std::uint64_t> without;
   for (std::size_t k = 0; k < paired.seeds.size(); ++k) {
+    if (!has_evaluation(*paired.a[k]) || !has_evaluation(*paired.b[k])) {
+      without.push_back(paired.seeds[k]);
+      continue;
+    }
     a.push_back(metrics::load_evaluation(paired.a[k]->folder));
     b.push_back(metrics::load_evaluation(paired.b[k]->folder));
   }
+  drive.seeds = a.size();
+  if (!without.empty())
+    missing.push_back({"no series", fmt::format("{} on case {}", paired.estimator_b, paired.case_name),
+                       fmt::format("evaluation.json is not there: seeds {}", seed_list(without)), without.size()});
   for (const char* name : kSeries) {
     std::vector<metrics::SeriesPair> pairs;
     for (std::size_t k = 0; k < a.size(); ++k) {
@@ -68,7 +82,8 @@ reports::CompareDrive compare_drive(const PairedRuns& paired, bool located) {
 }  // namespace
 
 std::vector<reports::CompareDrive> compare_drives(const Pairing& pairing, std::size_t most,
-                                                  const core::Progress& progress) {
+                                                  const core::Progress& progress,
+                                                  std::vector<reports::CompareMissing>& missing) {
   std::vector<std::pair<double, const PairedRuns*>> order;
   for (const PairedRuns& paired : pairing.pairs) order.push_back({strength(pairing, paired), &paired});
   std::stable_sort(order.begin(), order.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
@@ -77,7 +92,7 @@ std::vector<reports::CompareDrive> compare_drives(const Pairing& pairing, std::s
   for (std::size_t k = 0; k < order.size(); ++k) {
     progress(static_cast<double>(k) / static_cast<double>(order.size()),
              fmt::format("{} {}", order[k].second->case_name, order[k].second->estimator_b));
-    reports::CompareDrive drive = compare_drive(*order[k].second, order[k].first > 0);
+    reports::CompareDrive drive = compare_drive(*order[k].second, order[k].first > 0, missing);
     if (!drive.series.empty()) drives.push_back(std::move(drive));
   }
   progress(1, "");

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "scenarios/store.h"
 #include "tools/tarmac/layout.h"
 #include "tools/tarmac/provenance.h"
 
@@ -28,6 +29,23 @@ void remember_build(const std::string& build, ComparedFolder& into) {
   into.build += (into.build.empty() ? "" : ", ") + build;
 }
 
+template <class T>
+void remember(const T& value, std::vector<T>& list) {
+  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+}
+
+void keep_wanted(const FolderFilter& filter, ComparedRun run, ComparedFolder& into) {
+  remember(run.case_name, into.cases);
+  remember(run.estimator, into.estimators);
+  if (!filter.case_name.empty() && run.case_name != filter.case_name) return;
+  if (!filter.estimator.empty() && run.estimator != filter.estimator) return;
+  if (!filter.metrics.empty())
+    std::erase_if(run.rows, [&](const metrics::Row& row) {
+      return std::find(filter.metrics.begin(), filter.metrics.end(), row.metric) == filter.metrics.end();
+    });
+  into.runs.push_back(std::move(run));
+}
+
 ComparedRun read_run(const fs::path& folder, const Provenance& provenance, const fs::path& root) {
   if (!fs::is_regular_file(folder / "evaluation.json")) {
     throw core::InputError(
@@ -46,7 +64,7 @@ ComparedRun read_run(const fs::path& folder, const Provenance& provenance, const
   return run;
 }
 
-ComparedFolder read_runs(const fs::path& path, const core::Progress& progress) {
+ComparedFolder read_runs(const fs::path& path, const FolderFilter& filter, const core::Progress& progress) {
   ComparedFolder out;
   out.path = path;
   const std::vector<RunFolder> runs = runs_below(path);
@@ -57,7 +75,60 @@ ComparedFolder read_runs(const fs::path& path, const core::Progress& progress) {
     remember_build(build_of(text), out);
     const Provenance provenance = load_provenance(runs[i].provenance());
     for (const fs::path& folder : estimator_folders(runs[i]))
-      out.runs.push_back(read_run(folder, provenance, runs[i].root));
+      keep_wanted(filter, read_run(folder, provenance, runs[i].root), out);
+  }
+  progress(1, "");
+  return out;
+}
+
+metrics::Row row_of(const scenarios::MetricValue& value) {
+  return {value.estimate, value.metric, value.value, value.unit, value.ci_low, value.ci_high, value.status};
+}
+
+ComparedRun run_of(scenarios::CellResult& result, const fs::path& store) {
+  ComparedRun run;
+  run.case_name = result.cell.case_name;
+  run.seed = result.cell.seed;
+  run.estimator = result.cell.estimator;
+  run.status = result.outcome.status;
+  run.message = result.outcome.message;
+  run.recording_hash = result.outcome.recording_hash;
+  run.folder = store / result.outcome.folder / result.cell.estimator;
+  for (const scenarios::MetricValue& value : result.metrics) run.rows.push_back(row_of(value));
+  return run;
+}
+
+/// The names of all finished cells, without their metrics.
+void list_names(const scenarios::Store& store, ComparedFolder& into) {
+  for (const auto& row : store.query("select distinct case_name from results order by 1").rows)
+    into.cases.push_back(row.at(0).value_or(""));
+  for (const auto& row : store.query("select distinct estimator from results order by 1").rows)
+    into.estimators.push_back(row.at(0).value_or(""));
+}
+
+ComparedFolder read_store(const fs::path& path, const FolderFilter& filter, const core::Progress& progress) {
+  const scenarios::Store store = scenarios::Store::open(path, scenarios::Store::Access::read_only);
+  ComparedFolder out;
+  out.path = path;
+  out.build = store.identity().build;
+  list_names(store, out);
+  scenarios::ResultFilter wanted;
+  if (!filter.case_name.empty()) wanted.cases = {filter.case_name};
+  if (!filter.estimator.empty()) wanted.estimators = {filter.estimator};
+  wanted.metrics = filter.metrics;
+  progress(0.1, "reading the store");
+  std::vector<scenarios::CellResult> results = store.results(wanted);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (i % 1000 == 0) progress(0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(results.size()), "");
+    out.runs.push_back(run_of(results[i], path));
+    const fs::path provenance = path / results[i].outcome.folder / "provenance.json";
+    if (out.provenance_json.empty() && fs::is_regular_file(provenance))
+      out.provenance_json = core::read_file(provenance);
+    results[i].metrics.clear();
+  }
+  for (const scenarios::Cell& cell : store.unfinished()) {
+    out.unfinished += (filter.case_name.empty() || cell.case_name == filter.case_name) &&
+                      (filter.estimator.empty() || cell.estimator == filter.estimator);
   }
   progress(1, "");
   return out;
@@ -65,8 +136,9 @@ ComparedFolder read_runs(const fs::path& path, const core::Progress& progress) {
 
 }  // namespace
 
-ComparedFolder read_compared_folder(const fs::path& path, const core::Progress& progress) {
-  return read_runs(path, progress);
+ComparedFolder read_compared_folder(const fs::path& path, const FolderFilter& filter, const core::Progress& progress) {
+  if (!fs::is_directory(path)) throw core::InputError(fmt::format("{}: there is no such folder", path.string()));
+  return fs::exists(path / "store.sqlite") ? read_store(path, filter, progress) : read_runs(path, filter, progress);
 }
 
 }  // namespace tarmac::tools

@@ -25,13 +25,21 @@ struct ComparedRun {
 
 struct ComparedFolder {
   std::filesystem::path path;
-  std::string build;            ///< "0.1.0 697e83c234a6"; several are separated by commas
-  std::string provenance_json;  ///< of the first run that has one
+  std::string build;                           ///< "0.1.0 697e83c234a6"; several are separated by commas
+  std::string provenance_json;                 ///< of the first run that has one
+  std::vector<std::string> cases, estimators;  ///< all that are there, whatever was asked for
   std::vector<ComparedRun> runs;
   std::size_t unfinished = 0;  ///< cells of a store that have no outcome yet
 };
 
+/// Of a folder's runs those that are wanted; empty: all.
+struct FolderFilter {
+  std::string case_name, estimator;
+  std::vector<std::string> metrics;
+};
+
 /// Throws InputError when there is nothing to read: neither store nor run, or an estimator without evaluation.
-ComparedFolder read_compared_folder(const std::filesystem::path& path, const core::Progress& progress);
+ComparedFolder read_compared_folder(const std::filesystem::path& path, const FolderFilter& filter,
+                                    const core::Progress& progress);
 
 }  // namespace tarmac::tools

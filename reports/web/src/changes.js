@@ -145,7 +145,7 @@ export class RowTable {
       header("p", "Adjusted p", undefined, "By Holm's rule over all rows that are judged together: below 0.05 is called a difference"),
       header("verdict", "Difference", undefined, "Sort by verdict"));
     const body = sortRows(found, keys[column], ascending).map((row) => this.rowOf(row, axis));
-    this.body.replaceChildren(el("table", { class: "comparison changes" }, el("thead", {}, head), el("tbody", {}, ...body)));
+    this.body.replaceChildren(el("table", { class: `comparison changes${this.withWhere ? " with-where" : ""}` }, el("thead", {}, head), el("tbody", {}, ...body)));
     if (focus) this.body.querySelectorAll("th button")[columns.indexOf(focus)]?.focus();
   }
 
@@ -161,6 +161,7 @@ export class RowTable {
     el("td", { class: "interval-cell" }, bar(axis, row)),
     el("td", {}, `${row.b_better} of ${row.seeds}`),
     el("td", {}, formatP(row.p_adjusted)),
-    el("td", {}, el("span", { class: `chip ${tone(row)}` }, row.words)));
+    el("td", {}, el("span", { class: `chip ${tone(row)}`, tabindex: row.words === "not settled" ? "0" : null, "data-tip": row.words === "not settled"
+      ? `By itself this row would be significant (p = ${formatP(row.p)}), but not among all rows that were looked at.` : null }, row.words)));
   }
 }
