@@ -143,7 +143,7 @@ Database::Database(std::filesystem::path file, Mode mode) : file_(std::move(file
     // Of a transaction only the write-ahead log is written, and not waited for: ending a process loses nothing that was
     // committed, a power cut loses the last ones, and neither damages the file.
     if (mode != Mode::read_only)
-      execute("pragma journal_mode = wal; pragma synchronous = normal; pragma wal_autocheckpoint = 8000");
+      execute("pragma journal_mode = wal; pragma synchronous = normal; pragma wal_autocheckpoint = 2000");
   } catch (...) {
     sqlite3_close(db_);
     throw;

@@ -16,7 +16,8 @@ struct Bench {
   const char* name;
   BenchRows (*run)(const Console& console);
 };
-constexpr Bench kBenches[] = {{"sim", bench_sim}, {"estimators", bench_estimators}, {"metrics", bench_metrics}};
+constexpr Bench kBenches[] = {
+    {"sim", bench_sim}, {"estimators", bench_estimators}, {"metrics", bench_metrics}, {"store", bench_store}};
 
 const Bench& find(const std::string& name) {
   std::vector<std::string> names;
@@ -25,7 +26,7 @@ const Bench& find(const std::string& name) {
     names.emplace_back(bench.name);
   }
   const std::string guess = core::did_you_mean(name, names);
-  throw core::InputError(fmt::format("bench: there is no '{}'{}; there are sim, estimators and metrics", name,
+  throw core::InputError(fmt::format("bench: there is no '{}'{}; there are sim, estimators, metrics and store", name,
                                      guess.empty() ? "" : fmt::format(" (did you mean '{}'?)", guess)));
 }
 

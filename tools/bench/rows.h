@@ -22,5 +22,6 @@ using BenchRows = std::vector<BenchRow>;
 BenchRows bench_sim(const Console& console);
 BenchRows bench_estimators(const Console& console);
 BenchRows bench_metrics(const Console& console);
+BenchRows bench_store(const Console& console);
 
 }  // namespace tarmac::tools
