@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "core/error.h"
 #include "core/files.h"
 #include "core/random.h"
+#include "scenarios/sweep_file.h"
 #include "tests/support/temporary_folder.h"
 #include "tools/gates/judge.h"
 
@@ -333,6 +335,31 @@ TEST_F(GateTest, AMetricThatThereIsNotIsAnInputErrorWithASuggestion) {
     EXPECT_THAT(error.what(), HasSubstr("g.yaml:4"));
     EXPECT_THAT(error.what(), HasSubstr("did you mean 'rpe_1sweep_trans_rmse_m'"));
   }
+}
+
+/// Every shipped gate names metrics that there are, and every name and pattern in it selects cells of its sweep.
+TEST(ShippedGates, SelectCellsOfTheirSweeps) {
+  const std::filesystem::path folder = TARMAC_SCENARIOS;
+  std::size_t gates = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "gates")) {
+    const GateFile gate = load_gate(entry.path());
+    ++gates;
+    EXPECT_EQ(gate.name, entry.path().stem()) << entry.path();
+    ASSERT_FALSE(gate.sweep.empty()) << entry.path();
+    GateInput input;
+    input.gate = &gate;
+    for (const SweepCell& planned : load_sweep(folder / "sweeps" / (gate.sweep + ".yaml")).cells) {
+      Cell pending;
+      pending.case_name = planned.case_name;
+      pending.scenario = planned.scenario;
+      pending.estimator = planned.estimator;
+      pending.seed = planned.seed;
+      input.unfinished.push_back(pending);
+    }
+    for (const GateReportRow& row : tarmac::tools::judge_gate(input).rows)
+      EXPECT_THAT(row.reason, HasSubstr("not finished")) << entry.path() << ": " << row.case_name << row.estimator;
+  }
+  EXPECT_GE(gates, 2u);
 }
 
 }  // namespace
