@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "reports/page.h"
 #include "reports/page_json.h"
 #include "reports/web_bundle.h"

@@ -1,7 +1,7 @@
 /// Pieces of a page's data block that the report and the comparison share.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
 #include <vector>

@@ -23,11 +23,6 @@ struct TopLevel {
   }
 };
 
-bool is_kebab(const std::string& name) {
-  return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos &&
-         name.front() != '-' && name.back() != '-';
-}
-
 std::uint64_t parse_seed(const std::string& text, const std::string& whole) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
@@ -38,6 +33,11 @@ std::uint64_t parse_seed(const std::string& text, const std::string& whole) {
 }
 
 }  // namespace
+
+bool is_kebab(const std::string& name) {
+  return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos &&
+         name.front() != '-' && name.back() != '-';
+}
 
 Override parse_override(const std::string& text) {
   const std::size_t equals = text.find('=');

@@ -38,6 +38,9 @@ struct Scenario {
   core::Duration duration() const { return core::duration_from_s(duration_s); }
 };
 
+/// Lower-case letters, digits and hyphens, as in stand-turn: how files of this folder are named.
+bool is_kebab(const std::string& name);
+
 /// One `--set key=value`.
 using Override = std::pair<std::string, std::string>;
 /// Splits "key=value"; throws InputError when there is no '='.

@@ -100,6 +100,10 @@ std::string Statement::name(int column) const {
 bool Statement::null(int column) const {
   return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
 }
+bool Statement::number(int column) const {
+  const int type = sqlite3_column_type(statement_.get(), column);
+  return type == SQLITE_INTEGER || type == SQLITE_FLOAT;
+}
 std::int64_t Statement::integer(int column) const {
   return sqlite3_column_int64(statement_.get(), column);
 }
@@ -226,8 +230,8 @@ void Database::fail(int code) {
     case SQLITE_FULL:
     case SQLITE_IOERR:
       throw StoreFull(
-          fmt::format("{}: cannot be written ({}): the disk is full or fails. Finished cells are kept, and this one is "
-                      "not among them; free some space and go on with --resume",
+          fmt::format("{}: cannot be written ({}): the disk is full or fails. Nothing of what was being written is "
+                      "in it, finished cells are kept; free some space and try again (a sweep goes on with --resume)",
                       file_.string(), words));
     case SQLITE_NOTADB:
       throw core::InputError(

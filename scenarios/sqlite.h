@@ -54,6 +54,7 @@ class Statement {
   int columns() const;
   std::string name(int column) const;
   bool null(int column) const;
+  bool number(int column) const;
   std::int64_t integer(int column) const;
   double real(int column) const;
   std::optional<double> optional_real(int column) const;

@@ -104,8 +104,10 @@ class Store {
 
   /// Finished cells, in order of case, estimator, seed; with the metrics that the filter names.
   std::vector<CellResult> results(const ResultFilter& filter) const;
-  /// Cells that are not finished.
+  /// Cells that are not finished, in order of insertion.
   std::vector<Cell> unfinished() const;
+  /// Those that match, with the status `pending` or `running`.
+  std::vector<CellResult> unfinished(const ResultFilter& filter) const;
 
   /// All cells that match, finished or not, by columns (case, estimator, scenario, block, seed, world, status), sorted
   /// by them; with the values of the metrics that the filter names, of the causal estimate where there is one. Throws
@@ -117,6 +119,7 @@ class Store {
   struct Table {
     std::vector<std::string> columns;
     std::vector<std::vector<std::optional<std::string>>> rows;  ///< empty = NULL
+    std::vector<std::vector<bool>> numbers;                     ///< whether a value is a number
   };
   /// A statement that only reads (SQLite's authoriser holds it to that); throws InputError with SQLite's message.
   /// `check` is called now and then meanwhile: what it throws ends the statement.

@@ -14,13 +14,11 @@
 namespace tarmac::scenarios {
 namespace {
 
-constexpr const char* kStatus = "coalesce(o.status, case when l.cell is null then 'pending' else 'running' end)";
-
 /// Names of columns as users know them, and what they are.
 const std::vector<std::pair<std::string, std::string>>& columns() {
   static const std::vector<std::pair<std::string, std::string>> all = {
       {"case", "c.case_name"}, {"estimator", "c.estimator"}, {"scenario", "c.scenario"}, {"block", "c.block"},
-      {"seed", "c.seed"},      {"world", "c.world"},         {"status", kStatus}};
+      {"seed", "c.seed"},      {"world", "c.world"},         {"status", kStatusColumn}};
   return all;
 }
 
@@ -46,11 +44,11 @@ Grouping group_cells(Database& db, const ResultFilter& filter, const std::vector
   std::string selected;
   for (const std::string& name : by) selected += ", " + column(name);
   Conditions where(filter);
-  where.among(kStatus, filter.statuses);
+  where.among(kStatusColumn, filter.statuses);
   Statement rows =
       db.prepare(fmt::format("select c.id, {}{} from cells c left join outcomes o on o.cell = c.id "
                              "left join claims l on l.cell = c.id where 1{} order by c.id",
-                             kStatus, selected, where.sql()));
+                             kStatusColumn, selected, where.sql()));
   where.bind(rows);
   Grouping grouping;
   grouping.group_of.assign(static_cast<std::size_t>(db.integer("select max(id) from cells")) + 1, -1);
@@ -101,8 +99,14 @@ std::vector<CellGroup> Store::groups(const ResultFilter& filter, const std::vect
   const Snapshot snapshot(db);
   Grouping grouping = group_cells(db, filter, by);
   for (const std::string& metric : filter.metrics) add_metric(db, metric, grouping);
-  std::sort(grouping.groups.begin(), grouping.groups.end(),
-            [](const CellGroup& a, const CellGroup& b) { return a.by < b.by; });
+  std::sort(grouping.groups.begin(), grouping.groups.end(), [&](const CellGroup& a, const CellGroup& b) {
+    for (std::size_t i = 0; i < by.size(); ++i) {
+      if (a.by[i] == b.by[i]) continue;
+      const bool numbers = by[i] == "seed" && a.by[i].size() != b.by[i].size();
+      return numbers ? a.by[i].size() < b.by[i].size() : a.by[i] < b.by[i];
+    }
+    return false;
+  });
   return std::move(grouping.groups);
 }
 

@@ -20,10 +20,16 @@ std::vector<CellResult> Store::results(const ResultFilter& filter) const {
   return read_results(*state_->db, filter);
 }
 
-std::vector<Cell> Store::unfinished() const {
+std::vector<CellResult> Store::unfinished(const ResultFilter& filter) const {
   const std::lock_guard guard(state_->mutex);
   const Snapshot snapshot(*state_->db);
-  return read_unfinished(*state_->db);
+  return read_unfinished(*state_->db, filter);
+}
+
+std::vector<Cell> Store::unfinished() const {
+  std::vector<Cell> cells;
+  for (CellResult& one : unfinished(ResultFilter{})) cells.push_back(std::move(one.cell));
+  return cells;
 }
 
 Store::Table Store::query(const std::string& sql, const std::function<void()>& check) const {
@@ -36,7 +42,11 @@ Store::Table Store::query(const std::string& sql, const std::function<void()>& c
   for (int i = 0; i < rows.columns(); ++i) table.columns.push_back(rows.name(i));
   while (rows.step()) {
     auto& row = table.rows.emplace_back();
-    for (int i = 0; i < rows.columns(); ++i) row.push_back(rows.value_text(i));
+    auto& numbers = table.numbers.emplace_back();
+    for (int i = 0; i < rows.columns(); ++i) {
+      row.push_back(rows.value_text(i));
+      numbers.push_back(rows.number(i));
+    }
   }
   return table;
 }

@@ -137,16 +137,6 @@ auto order_of(const Cell& cell) {
   return std::tie(cell.case_name, cell.estimator, cell.seed, cell.key);
 }
 
-std::vector<Cell> cells_where(Database& db, const char* condition) {
-  Statement rows = db.prepare(fmt::format("select {} from cells c where {} order by id", kCellColumns, condition));
-  std::vector<Found> found;
-  while (rows.step()) found.push_back({rows.integer(0), {read_cell(rows), {}, {}}});
-  load_parameters(db, found);
-  std::vector<Cell> cells;
-  for (Found& one : found) cells.push_back(std::move(one.result.cell));
-  return cells;
-}
-
 }  // namespace
 
 std::int64_t MetricNames::id(Database& db, const MetricValue& metric) {
@@ -186,11 +176,32 @@ void insert_outcome(Database& db, MetricNames& names, std::int64_t run, std::int
 }
 
 std::vector<Cell> read_cells(Database& db) {
-  return cells_where(db, "1");
+  Statement rows = db.prepare(fmt::format("select {} from cells c order by c.id", kCellColumns));
+  std::vector<Found> found;
+  while (rows.step()) found.push_back({rows.integer(0), {read_cell(rows), {}, {}}});
+  load_parameters(db, found);
+  std::vector<Cell> cells;
+  for (Found& one : found) cells.push_back(std::move(one.result.cell));
+  return cells;
 }
 
-std::vector<Cell> read_unfinished(Database& db) {
-  return cells_where(db, "not exists (select 1 from outcomes o where o.cell = c.id)");
+std::vector<CellResult> read_unfinished(Database& db, const ResultFilter& filter) {
+  Conditions where(filter);
+  where.among(kStatusColumn, filter.statuses);
+  Statement rows =
+      db.prepare(fmt::format("select {}, {} from cells c left join outcomes o on o.cell = c.id "
+                             "left join claims l on l.cell = c.id where o.cell is null{} order by c.id",
+                             kCellColumns, kStatusColumn, where.sql()));
+  where.bind(rows);
+  std::vector<Found> found;
+  while (rows.step()) {
+    Found& one = found.emplace_back(Found{rows.integer(0), {read_cell(rows), {}, {}}});
+    one.result.outcome.status = rows.text(8);
+  }
+  load_parameters(db, found);
+  std::vector<CellResult> cells;
+  for (Found& one : found) cells.push_back(std::move(one.result));
+  return cells;
 }
 
 std::vector<CellResult> read_results(Database& db, const ResultFilter& filter) {

@@ -29,9 +29,14 @@ void insert_cell(Database& db, const Cell& cell);
 void insert_outcome(Database& db, MetricNames& names, std::int64_t run, std::int64_t cell, const CellOutcome& outcome,
                     std::span<const MetricValue> metrics);
 
+/// A cell's status: that of its outcome, or pending or running. Of cells c, outcomes o and claims l.
+inline constexpr const char* kStatusColumn =
+    "coalesce(o.status, case when l.cell is null then 'pending' else 'running' end)";
+
 /// All cells, in order of insertion.
 std::vector<Cell> read_cells(Database& db);
-std::vector<Cell> read_unfinished(Database& db);
+/// Cells without an outcome, in order of insertion.
+std::vector<CellResult> read_unfinished(Database& db, const ResultFilter& filter);
 /// As Store::results.
 std::vector<CellResult> read_results(Database& db, const ResultFilter& filter);
 

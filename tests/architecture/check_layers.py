@@ -44,7 +44,7 @@ HEAVY = [
 SOURCES_ONLY = [
     (re.compile(r"vtk\w+(\.h|/)"), "VTK"),
     (re.compile(r"yaml-cpp/"), "yaml-cpp"),
-    (re.compile(r"nlohmann/"), "nlohmann json"),
+    (re.compile(r"nlohmann/(?!json_fwd)"), "nlohmann json"),
     (re.compile(r"CLI/"), "CLI11"),
     (re.compile(r"sqlite3"), "SQLite"),
 ]

@@ -89,6 +89,30 @@ struct TransferArguments {
 int import_command(const TransferArguments& arguments, const CommonArguments& common);
 int export_command(const TransferArguments& arguments, const CommonArguments& common);
 
+struct TableArguments {
+  std::string folder;
+  std::vector<std::string> by = {"case", "estimator"};
+  std::vector<std::string> metrics;  ///< empty: the headline ones
+  std::vector<std::string> scenarios, cases, estimators, statuses;
+  std::string seeds;               ///< "" = all
+  std::vector<std::string> where;  ///< "motion.peak=3"
+  std::string sort;                ///< a column's name
+  bool reverse = false;
+  bool cells = false;  ///< one line a cell
+  bool dump = false;
+  std::string csv;  ///< a file, or - for standard output
+};
+int table_command(const TableArguments& arguments, const CommonArguments& common);
+struct QueryArguments {
+  std::string folder, sql, csv;
+};
+int query_command(const QueryArguments& arguments, const CommonArguments& common);
+struct MergeArguments {
+  std::vector<std::string> folders;
+  std::string out;
+};
+int merge_command(const MergeArguments& arguments, const CommonArguments& common);
+
 struct GateArguments {
   std::string folder;  ///< a sweep's
   std::string gate;    ///< file, or its name
@@ -106,7 +130,7 @@ struct BaselineArguments {
 int baseline_update_command(const BaselineArguments& arguments, const CommonArguments& common);
 
 struct BenchArguments {
-  std::vector<std::string> benches;  ///< sim, estimators, metrics; empty = all
+  std::vector<std::string> benches;  ///< sim, estimators, metrics, store; empty = all
 };
 /// In tools/bench.
 int bench_command(const BenchArguments& arguments, const CommonArguments& common);

@@ -69,11 +69,11 @@ class Bar {
 Console::Console(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
 
 void Console::say(const std::string& line) const {
-  if (!quiet_) fmt::print(stderr, "{}\n", line);
+  if (!quiet_) warn(line);
 }
 
 void Console::warn(const std::string& line) const {
-  fmt::print(stderr, "{}\n", line);
+  fmt::print(stderr, "{}{}\n", terminal_ ? "\r\x1b[K" : "", line);  // not behind a bar's rest
 }
 
 core::Progress Console::progress(const std::string& label) const {

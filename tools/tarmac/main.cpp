@@ -25,6 +25,9 @@ struct Arguments {
   DescribeArguments describe;
   TransferArguments transfer;
   BenchArguments bench;
+  TableArguments table;
+  QueryArguments query;
+  MergeArguments merge;
   SweepArguments sweep;
   GateArguments gate;
   BaselineArguments baseline;
@@ -64,6 +67,42 @@ void add_estimator_options(CLI::App* command, std::string& estimators, std::stri
   command->add_option("--config", config, "YAML file with an `estimators:` block");
   command->add_option("--diagnostics", diagnostics, "what is recorded per sweep: none, system or full (default)")
       ->check(CLI::IsMember({"none", "system", "full"}));
+}
+
+void add_store_commands(CLI::App& app, Arguments& a) {
+  CLI::App* table = add(app, a, "table", "the cells of a sweep as a table: how they ended and what was measured",
+                        [&a] { return table_command(a.table, a.common); });
+  table->add_option("folder", a.table.folder, "folder of a sweep")->required();
+  const auto list = [&](const char* name, std::vector<std::string>& values, const char* what) {
+    return table->add_option(name, values, what)->delimiter(',')->allow_extra_args(false);
+  };
+  list("--by", a.table.by, "columns that make a line: case, estimator, scenario, block, seed, world, status");
+  list("--metrics", a.table.metrics, "which metrics, separated by commas");
+  list("--scenario", a.table.scenarios, "only these");
+  // Names of cases may hold commas.
+  table->add_option("--case", a.table.cases, "only this (repeatable)")->allow_extra_args(false);
+  list("-e,--estimator", a.table.estimators, "only these");
+  list("--status", a.table.statuses, "only cells that ended so, or are pending or running");
+  table->add_option("--seed", a.table.seeds, "only this seed, or a range such as 1..3");
+  table->add_option("--where", a.table.where, "only cells with that parameter: motion.peak=3 (repeatable)")
+      ->allow_extra_args(false);
+  table->add_option("--sort", a.table.sort, "column that lines are sorted by, lowest first");
+  table->add_flag("--reverse", a.table.reverse, "the other way round");
+  table->add_flag("--cells", a.table.cells, "one line a cell");
+  table->add_flag("--dump", a.table.dump, "all that is the same whenever and wherever the sweep runs, sorted");
+  table->add_option("--csv", a.table.csv, "write the table there as CSV (- for standard output)");
+
+  CLI::App* query = add(app, a, "query", "ask the store of a sweep in SQL (reading only)",
+                        [&a] { return query_command(a.query, a.common); });
+  query->add_option("folder", a.query.folder, "folder of a sweep")->required();
+  query->add_option("select", a.query.sql, "such as: select * from results where metric = 'ate_se3_rmse_m'")
+      ->required();
+  query->add_option("--csv", a.query.csv, "write the rows there as CSV (- for standard output)");
+
+  CLI::App* merge =
+      add(app, a, "merge", "the stores of a sweep's shards as one", [&a] { return merge_command(a.merge, a.common); });
+  merge->add_option("folders", a.merge.folders, "folders of the shards")->required();
+  merge->add_option("-o,--out", a.merge.out, "folder for the whole sweep")->required();
 }
 
 void add_sweep_command(CLI::App& app, Arguments& a) {
@@ -108,7 +147,8 @@ void add_gate_commands(CLI::App& app, Arguments& a) {
   update->add_option("folders", a.baseline.folders, "folders of sweeps")->required();
   update->add_option("-o,--out", a.baseline.out, "baseline file")->required();
   update->add_option("--gate", a.baseline.gate, "gate file, or its name: the metrics to keep (default: the main ones)");
-  update->add_flag("--allow-incomplete", a.baseline.allow_incomplete, "leave out cells that failed or are not finished");
+  update->add_flag("--allow-incomplete", a.baseline.allow_incomplete,
+                   "leave out cells that failed or are not finished");
 }
 
 void add_compare_command(CLI::App& app, Arguments& a) {
@@ -182,7 +222,9 @@ void add_commands(CLI::App& app, Arguments& a) {
 
   CLI::App* bench = add(app, a, "bench", "what simulating, estimating and scoring cost on this machine",
                         [&a] { return bench_command(a.bench, a.common); });
-  bench->add_option("benches", a.bench.benches, "sim, estimators, metrics (default: all)");
+  bench->add_option("benches", a.bench.benches, "sim, estimators, metrics, store (default: all)");
+
+  add_store_commands(app, a);
 
   add_sweep_command(app, a);
 

@@ -7,11 +7,9 @@
 #include "metrics/evaluation.h"
 #include "tools/tarmac/layout.h"
 #include "tools/tarmac/outcome.h"
+#include "tools/tarmac/text_table.h"
 
 namespace tarmac::tools {
-
-/// Text columns, the first left-aligned, the others right-aligned.
-void print_table(const std::vector<std::vector<std::string>>& lines);
 
 /// One line an estimator with the main metrics, seeds pooled by their median; as JSON every row of every seed.
 void print_results(const std::vector<metrics::Evaluation>& evaluations, bool json);
