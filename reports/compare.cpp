@@ -43,8 +43,12 @@ std::string verdict_sentence(const CompareInput& input, const CompareSummary& s)
                        plural(s.tested, "comparison"));
   }
   if (s.identical > 0) {
-    return fmt::format("{} (B) and {} (A) are identical: {} of {}the same numbers on every seed.", b, a,
-                       plural(s.identical, "comparison"), s.identical == 1 ? "it has " : "them have ");
+    // Where a few seeds differ nothing may be said of the whole.
+    if (s.too_few + s.no_ratio > 0)
+      return fmt::format("{} (B) and {} (A) have the same numbers on every seed in {}; {} more cannot be judged.", b, a,
+                         plural(s.identical, "comparison"), s.too_few + s.no_ratio);
+    return fmt::format("{} (B) and {} (A) are identical: the same numbers on every seed in {}.", b, a,
+                       plural(s.identical, "comparison"));
   }
   if (s.too_few + s.no_ratio > 0) {
     return fmt::format(
@@ -53,6 +57,19 @@ std::string verdict_sentence(const CompareInput& input, const CompareSummary& s)
         b, a, plural(s.too_few + s.no_ratio, "comparison"));
   }
   return fmt::format("{} (B) and {} (A) have no result in common that could be compared.", b, a);
+}
+
+/// A method that crashes has no errors to compare, and must not look unchanged.
+std::string failures(const CompareInput& input) {
+  std::size_t in_a = 0, in_b = 0;
+  for (const CompareMissing& line : input.missing) {
+    if (line.kind == kNoResultInA) in_a += line.count;
+    if (line.kind == kNoResultInB) in_b += line.count;
+  }
+  std::string text;
+  if (in_b) text += fmt::format(" B gave no result in {} that A finished.", plural(in_b, "run"));
+  if (in_a) text += fmt::format(" A gave no result in {} that B finished.", plural(in_a, "run"));
+  return text;
 }
 
 std::string recordings_sentence(const CompareInput& input) {
@@ -179,7 +196,7 @@ CompareSummary summary_of(const CompareInput& input) {
     s.no_ratio += row.verdict == CompareVerdict::no_ratio;
   }
   s.recordings = recordings_sentence(input);
-  s.sentence = verdict_sentence(input, s);
+  s.sentence = verdict_sentence(input, s) + failures(input);
   s.note = note_of(input, s);
   return s;
 }

@@ -61,9 +61,13 @@ struct CompareRow {
   std::string where() const;
 };
 
+/// Kinds of CompareMissing that the verdict speaks of: a run that the other side finished.
+inline constexpr const char* kNoResultInA = "no result in A";
+inline constexpr const char* kNoResultInB = "no result in B";
+
 /// Something that could not be compared. One line for all that lack the same in the same way.
 struct CompareMissing {
-  std::string kind;       ///< "only in A", "only in B", "failed in A", "failed in B", "failed in both", ...
+  std::string kind;       ///< "only in A", "no result in B", "value only in A", "unfinished in B", ...
   std::string what;       ///< "case stand-turn", "metric time_lag_ms"
   std::string detail;     ///< seeds, status and message
   std::size_t count = 1;  ///< runs or rows that it stands for

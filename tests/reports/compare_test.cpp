@@ -75,6 +75,15 @@ TEST(CompareWords, SayThatNothingDiffersAndThatAllIsIdentical) {
   EXPECT_THAT(summary_of(input({})).sentence, HasSubstr("no result in common"));
 }
 
+TEST(CompareWords, ACrashIsNotHiddenByIdenticalNumbers) {
+  CompareInput in = input({row("ate_se3_rmse_m", CompareVerdict::identical, 1)});
+  in.missing = {{kNoResultInB, "kiss-icp on case loop", "crashed: seeds 2", 1}};
+  EXPECT_THAT(summary_of(in).sentence, HasSubstr("B gave no result in 1 run that A finished"));
+  in = input({row("ate_se3_rmse_m", CompareVerdict::identical, 1), row("end_error_m", CompareVerdict::too_few, 3)});
+  EXPECT_THAT(summary_of(in).sentence, Not(HasSubstr("are identical")));
+  EXPECT_THAT(summary_of(in).sentence, HasSubstr("1 more cannot be judged"));
+}
+
 TEST(CompareWords, SayWhetherTheRecordingsAreTheSame) {
   CompareInput in = input({row("ate_se3_rmse_m", CompareVerdict::worse, 2)});
   EXPECT_THAT(summary_of(in).note, HasSubstr("same recordings (5 drives)"));

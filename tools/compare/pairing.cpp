@@ -103,7 +103,8 @@ void add_unpaired_seeds(const Key& key, const BySeed& a, const BySeed& b, std::v
           outcome(run_a) == outcome(run_b) ? outcome(run_a) : "A: " + outcome(run_a) + ", B: " + outcome(run_b);
       lines[{"no result in both", how}].push_back(seed);
     } else if (failed_a || failed_b) {
-      lines[{failed_a ? "no result in A" : "no result in B", outcome(failed_a ? run_a : run_b)}].push_back(seed);
+      lines[{failed_a ? reports::kNoResultInA : reports::kNoResultInB, outcome(failed_a ? run_a : run_b)}].push_back(
+          seed);
     }
   }
   for (const auto& [kind, which] : lines) {
