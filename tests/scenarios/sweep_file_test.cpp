@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/config.h"
+#include "core/files.h"
 #include "tests/scenarios/sweep_support.h"
 
 namespace tarmac::scenarios {
@@ -402,6 +403,25 @@ TEST_F(SweepFileTest, IsFoundByNameBesideTheScenariosAndIsNoScenario) {
     EXPECT_THAT(error.what(),
                 AllOf(HasSubstr("no such sweep"), HasSubstr("did you mean 'smoke'"), HasSubstr("tarmac list sweeps")));
   }
+}
+
+/// What docs/sweeps.md says of its own example.
+TEST_F(SweepFileTest, TheDocumentedExampleMakesTheCellsThatItSays) {
+  const std::string page = core::read_file(fs::path(TARMAC_SCENARIOS) / "../docs/sweeps.md");
+  const std::size_t begin = page.find("```yaml\n") + 8;
+  const SweepFile sweep = load(page.substr(begin, page.find("```", begin) - begin));
+  std::map<std::string, std::set<std::string>> cases_of;
+  for (const SweepCell& cell : sweep.cells) {
+    cases_of[cell.block + " " + cell.estimator].insert(cell.case_name);
+    load_scenario(find_scenario(cell.scenario, {TARMAC_SCENARIOS}), cell.sets);
+  }
+  EXPECT_EQ(cases_of["offset kiss-icp"].size(), 7U);
+  EXPECT_EQ(cases_of["offset ct-icp"].size(), 3U);
+  EXPECT_EQ(cases_of["rigs kiss-icp"].size(), 10U);
+  const std::vector<std::string> drawn = values(sweep, "rig.lidar.model");
+  EXPECT_EQ(std::count(drawn.begin(), drawn.end(), "vlp-16"), 10);  // five draws, two estimators
+  EXPECT_EQ(sweep.cells.size(), 60U);
+  EXPECT_THAT(page, HasSubstr("It makes 60 cells"));
 }
 
 TEST(ShippedSweeps, AreReadNameShippedScenariosAndKeepToTheirSize) {
