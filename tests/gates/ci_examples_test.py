@@ -40,8 +40,11 @@ def tarmac_calls(text):
 
 
 def help_of(program, words):
-    done = subprocess.run([program, *words, "--help"], capture_output=True, text=True)
-    return done.stdout if done.returncode == 0 else None
+    """The help of a command; None where there is no such command (the program would show its own help instead)."""
+    above = subprocess.run([program, *words[:-1], "--help"], capture_output=True, text=True, check=True).stdout
+    if not re.search(rf"^  {re.escape(words[-1])}\s", above, re.MULTILINE):
+        return None
+    return subprocess.run([program, *words, "--help"], capture_output=True, text=True, check=True).stdout
 
 
 def check_call(program, scenarios, words):
