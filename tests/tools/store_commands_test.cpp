@@ -204,7 +204,8 @@ TEST_F(StoreCommands, QueryReadsAndRefusesToWrite) {
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0], (nlohmann::json{{"status", "crashed"}, {"n", 1}, {"nix", nullptr}}));
   EXPECT_EQ(tarmac({"query", "whole", "select 'a,b' as x, 2 as y", "--csv", "-"}).out, "x,y\n\"a,b\",2\n");
-  EXPECT_THAT(tarmac({"query", "whole", "select 0.5 as half, null as none"}).out, HasSubstr("0.5   n/a"));
+  EXPECT_THAT(tarmac({"query", "whole", "select 0.5 as half, null as none"}).out,
+              HasSubstr("half  none\n0.5    n/a\n"));
   for (const char* sql : {"delete from outcomes", "select nonsense from results", "select 1; select 2"}) {
     const Ended ended = tarmac({"query", "whole", sql});
     EXPECT_EQ(ended.code, 2) << sql;
