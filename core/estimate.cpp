@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/chunk_file.h"
 #include "core/error.h"
 
@@ -51,6 +53,9 @@ Segment segment_from_chunk(const ChunkData& data, const std::string& where) {
   const auto span = data.column<std::int64_t>(1);
   const auto values = data.column<double>(2);
   if (span.size() != 2 || values.empty() || values.size() % kPoseValues != 0) fail("has a wrong shape");
+  for (const double value : values) {
+    if (!std::isfinite(value)) fail("has a pose that is not finite");
+  }
   segment.t0 = time_from_ns(span[0]);
   segment.t1 = time_from_ns(span[1]);
   for (std::size_t i = 0; i < values.size() / kPoseValues; ++i) segment.poses.push_back(pose_at(values, i));
@@ -95,6 +100,9 @@ std::vector<SweepResult> sweeps_from_chunk(const ChunkData& data, const std::str
   const auto poses = data.column<double>(1);
   if (numbers.size() % 5 != 0 || poses.size() != numbers.size() / 5 * kPoseValues) {
     throw DamagedFile(fmt::format("{}: the sweep results have a wrong shape", where));
+  }
+  for (const double value : poses) {
+    if (!std::isfinite(value)) throw DamagedFile(fmt::format("{}: a sweep's pose is not finite", where));
   }
   std::vector<SweepResult> sweeps;
   for (std::size_t i = 0; i < numbers.size() / 5; ++i) {

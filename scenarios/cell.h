@@ -13,7 +13,7 @@ namespace tarmac::scenarios {
 
 /// One estimator on one drive. All of it is decided before it runs.
 struct Cell {
-  std::string key;        ///< 16 hex digits over all that decides the result but the build
+  std::string key;        ///< 16 hex digits over all that decides the result but build and limits
   std::string world;      ///< key of the drive: cells of one world share a recording
   std::string block;      ///< name of the sweep file's block
   std::string scenario;   ///< name

@@ -223,6 +223,7 @@ void SweepLimits::visit(core::OptionVisitor& v) {
   v("wall_s", wall_s, "wall time of an estimator's process", {.above = 0});
   v("cpu_s", cpu_s, "CPU time of an estimator's process", {.above = 0});
   v("memory_mb", memory_mb, "memory of an estimator's process", {.above = 0});
+  v("file_mb", file_mb, "size of each file that an estimator's process writes", {.above = 0});
 }
 
 SweepFile load_sweep(const fs::path& file, const std::vector<Override>& sets) {

@@ -40,7 +40,7 @@
 namespace tarmac::scenarios {
 
 struct SweepLimits {
-  double wall_s = 600, cpu_s = 600, memory_mb = 4096;
+  double wall_s = 600, cpu_s = 600, memory_mb = 4096, file_mb = 16384;
   void visit(core::OptionVisitor& v);
 };
 

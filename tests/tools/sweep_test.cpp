@@ -92,6 +92,12 @@ class Sweep : public testing::Test {
     scenarios::Store::open(path(out), scenarios::Store::Access::read_only).dump(text);
     return text.str();
   }
+  static std::string sorted_outcomes(const std::string& out) {
+    std::string text;
+    for (const auto& r : scenarios::Store::open(path(out), scenarios::Store::Access::read_only).results({}))
+      text += r.cell.estimator + ": " + r.outcome.status + ": " + r.outcome.message + "\n";
+    return text;
+  }
   /// The undisturbed sweep that others are held against.
   static const std::string& undisturbed() {
     static const std::string text = [] {
@@ -162,21 +168,29 @@ TEST_F(Sweep, HostileEstimatorsAreRecordedAndTheOthersFinish) {
   glutton: {command: [python3, -c, "x = []\nwhile True: x.append(bytearray(1 << 20))"]
 }
   not-a-number: {command: [sh, -c, 'for t in 0 1 2; do echo $t nan nan nan 0 0 0 1; done > "$0"', '{output}']}
-  garbage: {command: [sh, -c, 'head -c 100000 /dev/urandom > "$0"', '{output}']}
+  garbage: {command: [sh, -c, 'head -c 100000 /bin/sh > "$0"', '{output}']}
+  liar: {command: [sh, -c, 'echo No space left on device; exit 1']}
+  flood: {command: [sh, -c, 'yes > "$0"', '{output}']}
 )yaml");
   core::write_file(path("hostile-sweep.yaml"), R"(name: hostile
 why: A test.
 seeds: 1
-estimators: [segfault, hang, glutton, not-a-number, garbage, kiss-icp]
-limits: {memory_mb: 300}
+estimators: [segfault, hang, glutton, not-a-number, garbage, liar, flood, kiss-icp]
+limits: {memory_mb: 300, file_mb: 50}
 blocks: [{scenario: short.yaml}]
 )");
-  const Ended ended = tarmac({"sweep", "hostile-sweep.yaml", "--config", "hostile.yaml", "-o", path("hostile").string(),
-                              "--cache", path("cache").string()});
+  const auto run = [&](const std::string& out) {
+    return tarmac({"sweep", "hostile-sweep.yaml", "--config", "hostile.yaml", "-o", path(out).string(), "--cache",
+                   path("cache").string()});
+  };
+  const Ended ended = run("hostile");
   EXPECT_EQ(ended.code, 3) << ended.text;
-  const std::map<std::string, std::string> expected = {{"segfault", "crashed"},      {"hang", "timed_out"},
-                                                       {"glutton", "out_of_memory"}, {"not-a-number", "bad_output"},
-                                                       {"garbage", "bad_output"},    {"kiss-icp", "ok"}};
+  // What is recorded of a failure is the same again, wherever things lay: no folder's name is in it.
+  EXPECT_EQ(run("hostile-again").code, 3);
+  EXPECT_EQ(sorted_outcomes("hostile-again"), sorted_outcomes("hostile"));
+  const std::map<std::string, std::string> expected = {
+      {"segfault", "crashed"},   {"hang", "timed_out"}, {"glutton", "out_of_memory"}, {"not-a-number", "bad_output"},
+      {"garbage", "bad_output"}, {"liar", "failed"},    {"flood", "failed"},          {"kiss-icp", "ok"}};
   EXPECT_EQ(statuses("hostile"), expected) << ended.text;
   const auto store = scenarios::Store::open(path("hostile"), scenarios::Store::Access::read_only);
   scenarios::ResultFilter failed;
@@ -279,6 +293,11 @@ TEST_F(Sweep, AKilledChildIsNoAnswerAndTheNextStartSaysWhatItDoes) {
 TEST_F(Sweep, ShardsMergedEqualTheWhole) {
   EXPECT_EQ(tarmac(small("part-1", {"--shard", "1/2"})).code, 0);
   EXPECT_EQ(tarmac(small("part-2", {"--shard", "2/2"})).code, 0);
+  for (const std::vector<std::string>& other : {std::vector<std::string>{"--resume"}, {"--resume", "--shard", "2/2"}}) {
+    const Ended ended = tarmac(small("part-1", other));
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_THAT(ended.text, HasSubstr("another shard's"));
+  }
   const std::vector<fs::path> parts = {path("part-1"), path("part-2")};
   EXPECT_EQ(scenarios::merge_stores(parts, path("merged")), kCells);
   EXPECT_EQ(dump("merged"), undisturbed());
@@ -297,6 +316,9 @@ TEST_F(Sweep, RefusesToMixWhatDoesNotBelongTogether) {
   const Ended other_cells = tarmac(small("undisturbed", {"--resume", "--set", "duration_s=1.5"}));
   EXPECT_EQ(other_cells.code, 2);
   EXPECT_THAT(other_cells.text, HasSubstr("list of cells"));
+  const Ended fast = tarmac(small("undisturbed", {"--resume", "--fast"}));
+  EXPECT_EQ(fast.code, 2);
+  EXPECT_THAT(fast.text, HasSubstr("its build was"));
   const fs::path program = program_folder() / "tarmac-cell";  // any other program than the one before
   const Ended other_build = tarmac(small("undisturbed", {"--resume", "--estimator-program", program.string()}));
   EXPECT_EQ(other_build.code, 2);
@@ -327,7 +349,7 @@ TEST_F(Sweep, AFullDiskStopsItAndAfterRoomIsMadeItGoesOn) {
   const std::string mount = path("small-disk").string();
   fs::create_directories(mount);
   std::vector<int> ballasts_kb = {3500};  // of 9000; it decides what is running when the disk is full
-  if (kill_rounds() > 2) ballasts_kb = {500, 1500, 2500, 3000, 3500, 4000, 4500, 5500, 7000, 8500};
+  if (kill_rounds() > 2) ballasts_kb = {2500, 3000, 3500, 4000, 4500, 5500, 7000, 8000, 8500, 8900};
   for (const int ballast_kb : ballasts_kb) {
     const std::string name = "full-" + std::to_string(ballast_kb);
     const std::vector<std::string> words = {"sweep",  "small.yaml", "-o",      mount + "/out",

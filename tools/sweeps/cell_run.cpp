@@ -50,17 +50,13 @@ std::string last_line(const std::string& text) {
 }
 
 /// Something has failed: was it for want of room?
-void throw_if_no_room(const fs::path& folder, const std::string& words) {
+void throw_if_no_room(const fs::path& folder, const std::string& words_of_ours) {
+  if (!lacks_room(folder, words_of_ours)) return;
   std::error_code error;
   const fs::space_info space = fs::space(folder, error);
-  const bool full = !error && space.available < kLeastRoomBytes;
-  if (!full && words.find(std::strerror(ENOSPC)) == std::string::npos &&
-      words.find(std::strerror(EDQUOT)) == std::string::npos) {
-    return;
-  }
   throw NoRoom(fmt::format("{}: no room left on the disk ({:.1f} MB available){}", folder.string(),
                            error ? 0.0 : 1e-6 * static_cast<double>(space.available),
-                           words.empty() ? "" : "; last words: " + last_line(words)));
+                           words_of_ours.empty() ? "" : "; last words: " + last_line(words_of_ours)));
 }
 
 /// A folder that is gone again unless it has been moved away.
@@ -89,17 +85,20 @@ struct HelperResult {
 
 /// tarmac-cell, with its log beside `result`.
 HelperResult run_helper(std::vector<std::string> words, const fs::path& result, const fs::path& log,
-                        const core::Progress& progress, bool with_progress) {
+                        const ChildLimits& of_estimators, const core::Progress& progress) {
   ChildRequest request;
+  request.limits.wall_s = 10 * of_estimators.wall_s;
+  request.limits.memory_mb = 4 * of_estimators.memory_mb;
   request.command = {(program_folder() / "tarmac-cell").string()};
   request.command.insert(request.command.end(), words.begin(), words.end());
   request.command.insert(request.command.end(), {"--result", fs::absolute(result).string()});
   request.working_folder = fs::current_path();
   request.log_file = log;
-  if (with_progress) request.progress_argument = "--progress-fd";
+  if (progress) request.progress_argument = "--progress-fd";
   request.on_progress = progress;
   HelperResult helper;
   helper.child = run_child(request);
+  if (helper.child.end == ChildResult::End::not_started) throw core::InputError(helper.child.message + "; build it");
   if (helper.child.ok()) helper.said = Json::parse(core::read_file(result));
   fs::remove(result);
   return helper;
@@ -154,20 +153,33 @@ void prune(const fs::path& folder, const std::string& keep) {
 }
 
 /// Scores a finished estimate; turns a failure into the cell's outcome. Returns the time of the scoring itself.
-double score_cell(const StagingFolder& staging, const std::string& estimator, FinishedCell& cell) {
+double score_cell(const StagingFolder& staging, const CachedRecording& recording, const std::string& estimator,
+                  const ChildLimits& limits, FinishedCell& cell) {
   const fs::path log = staging.path() / "score.txt";
   const HelperResult scored =
-      run_helper({"score", staging.path().string()}, staging.path() / "score.json", log, {}, false);
+      run_helper({"score", staging.path().string()}, staging.path() / "score.json", log, limits, {});
   if (!scored.child.ok()) {
     throw_if_no_room(staging.path(), tail_of(log));
     cell.outcome.status = scored.child.end == ChildResult::End::killed ? "killed" : "not_scored";
-    cell.outcome.message = fmt::format("scoring {}: {}", scored.child.message, last_line(tail_of(log)));
+    cell.outcome.message = without_folders(fmt::format("scoring {}: {}", scored.child.message, last_line(tail_of(log))),
+                                           {staging.path(), recording.folder});
     return 0;
   }
   fs::remove(log);
   const metrics::Evaluation evaluation = metrics::load_evaluation(staging.path() / estimator);
   cell.metrics = metrics_of(evaluation);
   return scored.said.at("work_s").get<double>();
+}
+
+FinishedCell with_outcome(const Outcome& outcome) {
+  FinishedCell cell;
+  cell.outcome.status = outcome.status;
+  cell.outcome.message = outcome.message;
+  cell.outcome.recording_hash = outcome.recording_hash;
+  cell.outcome.wall_s = outcome.wall_s;
+  cell.outcome.cpu_s = outcome.cpu_s;
+  cell.outcome.peak_memory_mb = outcome.peak_memory_mb;
+  return cell;
 }
 
 void put_cell_in_place(const StagingFolder& staging, const fs::path& target) {
@@ -178,27 +190,29 @@ void put_cell_in_place(const StagingFolder& staging, const fs::path& target) {
 
 }  // namespace
 
+bool lacks_room(const fs::path& folder, const std::string& words_of_ours) {
+  std::error_code error;
+  const fs::space_info space = fs::space(folder, error);
+  if (!error && space.available < kLeastRoomBytes) return true;
+  return words_of_ours.find(std::strerror(ENOSPC)) != std::string::npos ||
+         words_of_ours.find(std::strerror(EDQUOT)) != std::string::npos;
+}
+
 SimulatedDrive simulate_drive(const PlannedWorld& world, const fs::path& folder, const CellSettings& settings,
                               const core::Progress& progress) {
   const fs::path log = folder / "log.txt", scenario = folder / "scenario.yaml";
-  try {
-    core::write_file(scenario, world.resolved);
-    std::vector<std::string> words = {"simulate", scenario.string(), folder.string()};
-    if (settings.fast) words.emplace_back("--fast");
-    const HelperResult made = run_helper(std::move(words), folder / "result.json", log, progress, true);
-    if (made.child.ok()) {
-      return {made.said.at("recording_hash").get<std::string>(), made.said.at("work_s").get<double>()};
-    }
-    const std::string words_of_log = tail_of(log);
-    throw_if_no_room(folder, words_of_log);
-    throw NotSimulated(made.child.end == ChildResult::End::killed ? "killed" : "not_simulated",
-                       fmt::format("simulating {}: {}", made.child.message, last_line(words_of_log)));
-  } catch (const NoRoom&) {
-    throw;
-  } catch (const core::InputError& error) {
-    throw_if_no_room(folder, error.what());
-    throw;
+  core::write_file(scenario, world.resolved);
+  std::vector<std::string> words = {"simulate", scenario.string(), folder.string()};
+  if (settings.fast) words.emplace_back("--fast");
+  const HelperResult made = run_helper(std::move(words), folder / "result.json", log, settings.limits, progress);
+  if (made.child.ok()) {
+    return {made.said.at("recording_hash").get<std::string>(), made.said.at("work_s").get<double>()};
   }
+  const std::string words_of_log = tail_of(log);
+  throw_if_no_room(folder, words_of_log);
+  throw NotSimulated(
+      made.child.end == ChildResult::End::killed ? "killed" : "not_simulated",
+      without_folders(fmt::format("simulating {}: {}", made.child.message, last_line(words_of_log)), {folder}));
 }
 
 FinishedCell run_cell(const PlannedCell& planned, const PlannedWorld& world, const CachedRecording& recording,
@@ -207,44 +221,26 @@ FinishedCell run_cell(const PlannedCell& planned, const PlannedWorld& world, con
   const StagingFolder staging(folders.work / planned.cell.key);
   const fs::path target = folders.cell(planned.cell);
   const std::string& name = planned.request.name;
-  FinishedCell cell;
-  double work_s = 0;
-  try {
-    const Outcome outcome =
-        run_one_estimator(planned.request, recording.recording(), recording.recording_hash, staging.path() / name,
-                          {.threads = 1,
-                           .diagnostics = settings.diagnostics,
-                           .limits = settings.limits,
-                           .work_folder = folders.work,
-                           .estimator_program = settings.estimator_program},
-                          progress);
-    cell.outcome.status = outcome.status;
-    cell.outcome.message = outcome.message;
-    cell.outcome.recording_hash = outcome.recording_hash;
-    cell.outcome.wall_s = outcome.wall_s;
-    cell.outcome.cpu_s = outcome.cpu_s;
-    cell.outcome.peak_memory_mb = outcome.peak_memory_mb;
-    if (outcome.failed())
-      throw_if_no_room(staging.path(), outcome.message + "\n" + tail_of(staging.path() / name / "log.txt"));
-    work_s = outcome.wall_s;
-    core::write_file(staging.path() / "scenario.yaml", resolve_scenario(world.scenario, world.seed, {planned.request}));
-    save_cell_provenance(staging.path() / "provenance.json", planned, world, recording,
-                         fs::absolute(recording.recording()).string(), fs::absolute(recording.truth()).string());
-    if (outcome.status == "ok") work_s += score_cell(staging, name, cell);
-    save_cell_provenance(staging.path() / "provenance.json", planned, world, recording,
-                         seen_from(target, folders.store, recording.recording()),
-                         seen_from(target, folders.store, recording.truth()));
-    prune(staging.path() / name, settings.keep);
-    put_cell_in_place(staging, target);
-  } catch (const NoRoom&) {
-    throw;
-  } catch (const core::InputError& error) {
-    throw_if_no_room(folders.work, error.what());
-    throw;
-  } catch (const fs::filesystem_error& error) {
-    throw_if_no_room(folders.work, error.what());
-    throw;
+  const EstimatorRunSettings run_settings{1, settings.diagnostics, settings.limits, folders.work,
+                                          settings.estimator_program};
+  const Outcome outcome = run_one_estimator(planned.request, recording.recording(), recording.recording_hash,
+                                            staging.path() / name, run_settings, progress);
+  if (outcome.failed()) {
+    throw_if_no_room(staging.path(), planned.request.bundled ? tail_of(staging.path() / name / "log.txt") : "");
   }
+  FinishedCell cell = with_outcome(outcome);
+  double work_s = outcome.wall_s;
+  core::write_file(staging.path() / "scenario.yaml", resolve_scenario(world.scenario, world.seed, {planned.request}));
+  const fs::path provenance = staging.path() / "provenance.json";
+  if (outcome.status == "ok") {
+    save_cell_provenance(provenance, planned, world, recording, recording.recording().string(),
+                         recording.truth().string());
+    work_s += score_cell(staging, recording, name, settings.limits, cell);
+  }
+  save_cell_provenance(provenance, planned, world, recording, seen_from(target, folders.store, recording.recording()),
+                       seen_from(target, folders.store, recording.truth()));
+  prune(staging.path() / name, settings.keep);
+  put_cell_in_place(staging, target);
   cell.outcome.folder = target.lexically_relative(folders.store).string();
   cell.outcome.command = planned.command;
   cell.outcome.overhead_s = seconds_since(began) - work_s;

@@ -34,7 +34,8 @@ struct CellFolders {
 };
 
 struct CellSettings {
-  ChildLimits limits;
+  ChildLimits
+      limits;  ///< of the estimator; simulating and scoring get ten times its wall time and four times its memory
   std::string diagnostics, keep;
   std::filesystem::path estimator_program;
   bool fast = false;
@@ -44,6 +45,10 @@ struct SimulatedDrive {
   std::string recording_hash;
   double work_s = 0;  ///< of the simulation itself
 };
+/// True: what went wrong went wrong for want of room, by the room that is left in `folder` or by the words of a program
+/// of ours (a method's own words are not believed).
+bool lacks_room(const std::filesystem::path& folder, const std::string& words_of_ours);
+
 /// Simulates a drive into `folder`. Throws NotSimulated, NoRoom, Interrupted.
 SimulatedDrive simulate_drive(const PlannedWorld& world, const std::filesystem::path& folder,
                               const CellSettings& settings, const core::Progress& progress);
@@ -53,8 +58,8 @@ struct FinishedCell {
   std::vector<scenarios::MetricValue> metrics;
 };
 
-/// Runs the estimator, scores it, and puts the cell's files in place. A failure of the method is an outcome. Throws
-/// NoRoom and Interrupted, which leave nothing behind.
+/// Runs the estimator, scores it, and puts the cell's files in place. A failure of the method is an outcome. What is
+/// thrown (NoRoom, Interrupted, whatever a full or broken disk makes of writing) leaves nothing behind.
 FinishedCell run_cell(const PlannedCell& cell, const PlannedWorld& world, const CachedRecording& recording,
                       const CellFolders& folders, const CellSettings& settings, const core::Progress& progress);
 

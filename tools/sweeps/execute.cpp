@@ -16,6 +16,7 @@
 #include "tools/sweeps/cell_run.h"
 #include "tools/sweeps/cost.h"
 #include "tools/sweeps/schedule.h"
+#include "tools/tarmac/child.h"
 
 namespace tarmac::tools {
 namespace {
@@ -89,6 +90,33 @@ class Status {
   core::Progress bar_;
 };
 
+/// The programs that cells run in: a build that goes on meanwhile would mix two builds in one store.
+class ProgramsOnDisk {
+ public:
+  explicit ProgramsOnDisk(const fs::path& estimator_program) {
+    files_ = {program_folder() / "tarmac-cell",
+              estimator_program.empty() ? program_folder() / "tarmac-estimate" : fs::absolute(estimator_program)};
+    for (const fs::path& file : files_) times_.push_back(time_of(file));
+  }
+  void throw_if_changed() const {
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      if (time_of(files_[i]) == times_[i]) continue;
+      throw core::InputError(fmt::format(
+          "{}: was built again while the sweep ran; finished cells are kept, but those of another build do not go into "
+          "this store: start the sweep again in another folder",
+          files_[i].string()));
+    }
+  }
+
+ private:
+  static fs::file_time_type time_of(const fs::path& file) {
+    std::error_code missing;
+    return fs::last_write_time(file, missing);
+  }
+  std::vector<fs::path> files_;
+  std::vector<fs::file_time_type> times_;
+};
+
 /// What the slots share.
 class Execution {
  public:
@@ -97,11 +125,12 @@ class Execution {
         store_(store),
         cache_(settings.cache, settings.cache_limit_gb),
         folders_{store.folder(), store.work_folder()},
-        settings_{{plan.file.limits.wall_s, plan.file.limits.cpu_s, plan.file.limits.memory_mb},
-                  plan.file.diagnostics,
-                  plan.file.keep,
-                  settings.estimator_program,
-                  settings.fast},
+        settings_{
+            {plan.file.limits.wall_s, plan.file.limits.cpu_s, plan.file.limits.memory_mb, plan.file.limits.file_mb},
+            plan.file.diagnostics,
+            plan.file.keep,
+            settings.estimator_program,
+            settings.fast},
         recordings_(plan.worlds.size()),
         not_simulated_(plan.worlds.size()),
         schedule_(pending_cells(), costs_of_worlds()),
@@ -191,6 +220,7 @@ class Execution {
     } else {
       try {
         const FinishedCell finished = run(task, planned);
+        programs_.throw_if_changed();
         store_.finish(key, finished.outcome, finished.metrics);
         count(finished);
         const fs::path log = folders_.cell(planned.cell) / planned.cell.estimator / "log.txt";
@@ -249,7 +279,8 @@ class Execution {
   RecordingCache cache_;
   const CellFolders folders_;
   const CellSettings settings_;
-  const std::string simulator_build_ = build_identity({});
+  const std::string simulator_build_ = build_identity({}, settings_.fast);
+  const ProgramsOnDisk programs_{settings_.estimator_program};
   double pending_cost_ = 0;
   std::size_t pending_count_ = 0;
 

@@ -84,12 +84,17 @@ class Planner {
   }
 
   std::string command_of(const scenarios::SweepCell& cell, const LoadedScenario& loaded) const {
-    std::vector<std::string> words = {"tarmac", "run", loaded.file.string(), "--seed", std::to_string(cell.seed)};
+    std::vector<std::string> words = {"tarmac", "run", fs::absolute(loaded.file).lexically_normal().string(), "--seed",
+                                      std::to_string(cell.seed)};
     for (const auto& [key, value] : cell.sets) {
       words.push_back("--set");
       words.push_back(key + "=" + value);
     }
-    if (!settings_.config.empty()) words.insert(words.end(), {"--config", settings_.config});
+    const auto absolute = [](const fs::path& path) { return fs::absolute(path).lexically_normal().string(); };
+    if (!settings_.config.empty()) words.insert(words.end(), {"--config", absolute(settings_.config)});
+    if (!settings_.estimator_program.empty())
+      words.insert(words.end(), {"--estimator-program", absolute(settings_.estimator_program)});
+    if (settings_.fast) words.emplace_back("--fast");
     words.insert(words.end(),
                  {"-e", cell.estimator, "--diagnostics", file_.diagnostics, "--jobs", "1", "-o", "one-cell"});
     return shell_command(words);
@@ -134,7 +139,7 @@ SweepPlan make_plan(const fs::path& sweep_file, const PlanSettings& settings) {
   std::vector<scenarios::Override> sets;
   for (const std::string& set : settings.sets) sets.push_back(scenarios::parse_override(set));
   plan.file = scenarios::load_sweep(sweep_file, sets);
-  plan.build = build_identity(settings.estimator_program);
+  plan.build = build_identity(settings.estimator_program, settings.fast);
   Planner planner(plan.file, settings);
   for (const scenarios::SweepCell& cell : plan.file.cells) planner.add(cell, plan);
   plan.hash = hash_of_keys(plan.cells);
@@ -142,7 +147,7 @@ SweepPlan make_plan(const fs::path& sweep_file, const PlanSettings& settings) {
   return plan;
 }
 
-std::string build_identity(const fs::path& estimator_program) {
+std::string build_identity(const fs::path& estimator_program, bool fast) {
   const BuildInfo build = build_info();
   std::string identity = fmt::format("{} {} ({}, {})", build.version, build.commit, build.compiler, build.build_type);
   const bool told_by_commit = build.commit != "unknown" && !build.commit.ends_with("-modified");
@@ -153,6 +158,7 @@ std::string build_identity(const fs::path& estimator_program) {
     }
     identity += " programs " + core::hash_hex(hashes);
   }
+  if (fast) identity += " fast";
   if (!estimator_program.empty()) identity += " estimators " + core::hash_hex(core::read_file(estimator_program));
   return identity;
 }

@@ -41,6 +41,7 @@ struct PlanSettings {
   std::vector<std::string> sets;            ///< --set, over the file's
   std::string config;                       ///< --config: a file with an `estimators:` block
   std::filesystem::path estimator_program;  ///< another build's tarmac-estimate
+  bool fast = false;                        ///< the tracer's instruction set is not pinned
   std::size_t shard = 0, shards = 1;        ///< worlds are dealt out: this one has those with index % shards == shard
 };
 
@@ -48,7 +49,7 @@ struct PlanSettings {
 SweepPlan make_plan(const std::filesystem::path& sweep_file, const PlanSettings& settings);
 
 /// Version, commit and compiler; where the commit does not say it all (a modified tree, no git), and for a program from
-/// elsewhere, also a hash of the programs.
-std::string build_identity(const std::filesystem::path& estimator_program);
+/// elsewhere, also a hash of the programs; "fast" where the tracer's instruction set is not pinned.
+std::string build_identity(const std::filesystem::path& estimator_program, bool fast);
 
 }  // namespace tarmac::tools

@@ -101,7 +101,8 @@ CachedRecording RecordingCache::obtain(const std::string& key,
     if (fs::exists(folder / kMark)) {
       if (!lock->try_shared()) continue;
       if (const auto hash = read_entry(folder)) {
-        fs::last_write_time(folder / kMark, fs::file_time_type::clock::now());
+        std::error_code not_ours;  // another user's entry can be read, but is not made younger
+        fs::last_write_time(folder / kMark, fs::file_time_type::clock::now(), not_ours);
         return {folder, *hash, made, lock};
       }
       continue;  // it was removed before the lock was ours
@@ -137,7 +138,11 @@ std::uintmax_t RecordingCache::trim() const {
     std::error_code error;
     const fs::file_time_type used = fs::last_write_time(entry.path() / kMark, error);
     std::uintmax_t bytes = 0;
-    if (error || !read_entry(entry.path(), &bytes)) continue;
+    try {
+      if (error || !read_entry(entry.path(), &bytes)) continue;
+    } catch (const core::InputError&) {
+      continue;  // another process is removing it
+    }
     entries.push_back({used, bytes, entry.path()});
     sum += bytes;
   }

@@ -12,6 +12,7 @@ namespace tarmac::tools {
 /// for each process.
 struct ChildLimits {
   double wall_s = 0, cpu_s = 0, memory_mb = 0;
+  double file_mb = 0;  ///< of each file that it writes
 };
 
 struct ChildRequest {

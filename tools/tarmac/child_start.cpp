@@ -42,8 +42,8 @@ struct Prepared {
   std::string program, working_folder, log_file;
   std::vector<std::string> words;
   std::vector<char*> argv;
-  rlimit cpu{}, data{};
-  bool limits_cpu = false, limits_data = false;
+  rlimit cpu{}, data{}, file{};
+  bool limits_cpu = false, limits_data = false, limits_file = false;
   int progress_end = -1, error_end = -1;
   pid_t parent = 0;
 
@@ -71,6 +71,11 @@ struct Prepared {
       const auto bytes = static_cast<rlim_t>((kAllocationFactor * limits.memory_mb + kAllocationMarginMb) * 1048576.0);
       data = {bytes, bytes};
       limits_data = true;
+    }
+    if (limits.file_mb > 0) {
+      const auto bytes = static_cast<rlim_t>(limits.file_mb * 1048576.0);
+      file = {bytes, bytes};
+      limits_file = true;
     }
   }
 };
@@ -105,6 +110,7 @@ struct Prepared {
   if (::chdir(p.working_folder.c_str()) != 0) give_up(p.error_end);
   if (p.limits_cpu) ::setrlimit(RLIMIT_CPU, &p.cpu);
   if (p.limits_data) ::setrlimit(RLIMIT_DATA, &p.data);
+  if (p.limits_file) ::setrlimit(RLIMIT_FSIZE, &p.file);
   ::execve(p.program.c_str(), p.argv.data(), environ);
   give_up(p.error_end);
 }

@@ -25,6 +25,7 @@ struct ScenarioArguments {
   std::string config;  ///< file with an `estimators:` block
   std::string estimators = "all";
   std::string diagnostics = "full";
+  std::string estimator_program;  ///< another build's tarmac-estimate; empty = this one's
   bool fast = false;
 };
 int run_command(const ScenarioArguments& arguments, const CommonArguments& common);

@@ -13,6 +13,7 @@
 #include "io/sensor/plain.h"
 #include "tools/tarmac/child.h"
 #include "tools/tarmac/foreign.h"
+#include "tools/tarmac/layout.h"
 
 namespace tarmac::tools {
 namespace {
@@ -239,6 +240,10 @@ Outcome run_one_estimator(const EstimatorRequest& request, const fs::path& recor
   child.log_file = place.output() / "log.txt";
   child.on_progress = [&](double fraction, const std::string& note) { progress(std::min(fraction, 0.999), note); };
   const ChildResult result = run_child(child);
+  if (request.bundled && result.end == ChildResult::End::not_started) {
+    // Not the method's failure: our own program is missing, as it is while a build links it.
+    throw core::InputError(result.message + "; build it, or give another with --estimator-program");
+  }
 
   Outcome outcome = outcome_of(request, result, request.bundled ? settings.threads : 0);
   outcome.recording_hash = recording_hash;
@@ -247,6 +252,7 @@ Outcome run_one_estimator(const EstimatorRequest& request, const fs::path& recor
   } else {
     adopt_foreign_output(request.name, request.tool, recording_folder, place.output(), result, outcome);
   }
+  outcome.message = without_folders(outcome.message, {place.output(), place.path()});
   save_outcome(place.output(), outcome);
   put_in_place(place.output(), target);
   progress(1.0, outcome.status == "ok" ? fmt::format("{:.1f} s CPU", outcome.cpu_s) : outcome.status);

@@ -12,6 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kForeignPoses = "foreign.tum";
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 29;  // ten hours at 1 kHz are less
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
   for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += with.size()) {
@@ -76,6 +77,11 @@ void adopt_foreign_output(const std::string& name, const ForeignTool& tool, cons
   if (!fs::is_regular_file(poses_file)) {
     outcome.status = "no_output";
     outcome.message = "the program ended well but wrote no trajectory to {output}";
+    return;
+  }
+  if (const std::uintmax_t bytes = fs::file_size(poses_file); bytes > kMostBytes) {
+    outcome.status = "bad_output";
+    outcome.message = fmt::format("the trajectory has {} bytes; more than {} are not read", bytes, kMostBytes);
     return;
   }
   try {

@@ -5,7 +5,9 @@
 
 namespace tarmac::tools {
 
-/// Thrown at a safe point after Ctrl-C; the program then ends with exit code 130.
+inline constexpr int kInterruptedExit = 130;  ///< the program's exit code after Ctrl-C
+
+/// Thrown at a safe point after Ctrl-C.
 class Interrupted : public std::exception {
  public:
   const char* what() const noexcept override { return "interrupted"; }

@@ -73,6 +73,15 @@ std::vector<fs::path> estimator_folders(const RunFolder& run) {
   return folders;
 }
 
+std::string without_folders(std::string text, const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders) {
+    const std::string name = folder.string() + "/";
+    if (folder.empty()) continue;
+    for (std::size_t at = 0; (at = text.find(name, at)) != std::string::npos;) text.erase(at, name.size());
+  }
+  return text;
+}
+
 void link_latest(const fs::path& folder) {
   const fs::path absolute = fs::absolute(folder).lexically_normal();
   const fs::path target = absolute.has_filename() ? absolute : absolute.parent_path();

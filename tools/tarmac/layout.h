@@ -26,6 +26,9 @@ std::vector<RunFolder> runs_below(const std::filesystem::path& folder);
 /// Estimator folders of a run that hold a finished outcome, sorted by name.
 std::vector<std::filesystem::path> estimator_folders(const RunFolder& run);
 
+/// The text without the names of these folders (and the slash behind them): the same words wherever things lie.
+std::string without_folders(std::string text, const std::vector<std::filesystem::path>& folders);
+
 /// Points the link `latest` beside `folder` at it. A `latest` that is no link is left alone.
 void link_latest(const std::filesystem::path& folder);
 

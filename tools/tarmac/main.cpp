@@ -14,7 +14,7 @@
 namespace tarmac::tools {
 namespace {
 
-constexpr int kBadUsage = 2, kInternalError = 4, kInterruptedExit = 130;
+constexpr int kBadUsage = 2, kInternalError = 4;
 
 struct Arguments {
   CommonArguments common;
@@ -173,6 +173,9 @@ void add_commands(CLI::App& app, Arguments& a) {
                       [&a] { return run_command(a.scenario, a.common); });
   add_scenario_options(run, a, false);
   add_estimator_options(run, a.scenario.estimators, a.scenario.config, a.scenario.diagnostics);
+
+  run->add_option("--estimator-program", a.scenario.estimator_program, "another build's tarmac-estimate")
+      ->check(CLI::ExistingFile);
 
   CLI::App* simulate = add(app, a, "simulate", "make a recording, with the truth beside it",
                            [&a] { return simulate_command(a.scenario, a.common); });

@@ -126,8 +126,8 @@ int run_command(const ScenarioArguments& arguments, const CommonArguments& commo
   for (const std::uint64_t seed : plan.seeds) {
     const RunFolder run = plan.folder(seed);
     const Provenance provenance = simulate_seed(plan, seed, arguments, common, console);
-    const auto outcomes =
-        run_estimators(plan.estimators, run.recording(), run.root, {common.threads(), arguments.diagnostics}, console);
+    const EstimatorRunSettings settings{common.threads(), arguments.diagnostics, {}, {}, arguments.estimator_program};
+    const auto outcomes = run_estimators(plan.estimators, run.recording(), run.root, settings, console);
     for (const Outcome& outcome : outcomes) failed = failed || outcome.failed();
     save_provenance(run.provenance(), provenance);
     for (metrics::Evaluation& evaluation : evaluate_run(run, common.threads(), console)) {

@@ -3,12 +3,14 @@
 #include <fmt/ranges.h>
 
 #include <charconv>
+#include <set>
 
 #include "core/error.h"
 #include "tools/sweeps/cell_run.h"
 #include "tools/sweeps/cost.h"
 #include "tools/sweeps/execute.h"
 #include "tools/tarmac/commands.h"
+#include "tools/tarmac/interrupt.h"
 #include "tools/tarmac/layout.h"
 
 namespace tarmac::tools {
@@ -62,6 +64,18 @@ std::vector<scenarios::Cell> cells_of(const SweepPlan& plan) {
   return cells;
 }
 
+/// A store holds the cells of its shard: resumed as another one, or as the whole, it would never be complete.
+void refuse_other_shard(const SweepPlan& plan, const scenarios::Store& store) {
+  std::set<std::string> planned, stored;
+  for (const PlannedCell& cell : plan.cells) planned.insert(cell.cell.key);
+  for (const auto& row : store.query("select key from cells").rows) stored.insert(row.at(0).value());
+  if (planned == stored) return;
+  throw core::InputError(fmt::format(
+      "{}: holds {} of the sweep's cells, and not the {} that were asked for: it is another shard's; give the "
+      "same --shard as before, or another folder",
+      store.folder().string(), stored.size(), planned.size()));
+}
+
 scenarios::Store open_store(const SweepPlan& plan, const fs::path& out, bool go_on) {
   const scenarios::StoreIdentity identity{plan.file.name, plan.hash, plan.build};
   if (!fs::exists(out / "store.sqlite")) {
@@ -81,6 +95,7 @@ scenarios::Store open_store(const SweepPlan& plan, const fs::path& out, bool go_
   if (there.sweep != identity.sweep) refuse("sweep", there.sweep, identity.sweep);
   if (there.plan_hash != identity.plan_hash) refuse("list of cells (hash)", there.plan_hash, identity.plan_hash);
   if (there.build != identity.build) refuse("build", there.build, identity.build);
+  refuse_other_shard(plan, store);
   return store;
 }
 
@@ -98,12 +113,6 @@ void say_start(const scenarios::StoreStart& start, const Console& console) {
         fmt::format("{} cells are done ({} of them failed), {} to go", start.done, start.failed, start.pending));
 }
 
-int stop_for_want_of_room(const core::InputError& error, const Console& console) {
-  console.warn(fmt::format("error: {}\nthe sweep stops; finished cells are kept. Make room, then go on with --resume",
-                           error.what()));
-  return 3;
-}
-
 /// 3 where some cells failed or were lost, whichever run of the store it was.
 int exit_code_of(const scenarios::Store& store) {
   scenarios::ResultFilter outcomes_only;
@@ -113,33 +122,14 @@ int exit_code_of(const scenarios::Store& store) {
   return 0;
 }
 
-}  // namespace
-
-int sweep_command(const SweepArguments& arguments, const CommonArguments& common) {
-  const Console console(common.quiet);
-  const fs::path file = scenarios::find_beside_scenarios(arguments.sweep, "sweeps", scenario_folders());
-  PlanSettings settings{arguments.sets, arguments.config, arguments.estimator_program};
-  if (!arguments.shard.empty()) parse_shard(arguments.shard, settings);
-  const SweepPlan plan = make_plan(file, settings);
-  if (arguments.dry_run) {
-    print_plan(plan, common.threads());
-    return 0;
-  }
-  if (arguments.out.empty()) throw core::InputError("sweep: -o is missing; expected a folder for the results");
-  const fs::path out = fs::absolute(arguments.out).lexically_normal();
+int run_plan(const SweepPlan& plan, const fs::path& out, const SweepArguments& arguments, const CommonArguments& common,
+             const Console& console) {
   scenarios::Store store = open_store(plan, out, arguments.resume || arguments.rerun_failed);
   say_start(store.start(arguments.rerun_failed), console);
-  const ExecuteSettings execute_settings{common.threads(),
-                                         arguments.cache.empty() ? out / "recordings" : fs::path(arguments.cache),
-                                         arguments.cache_limit_gb, arguments.estimator_program, arguments.fast};
-  ExecuteSummary summary;
-  try {
-    summary = execute(plan, store, execute_settings, console);
-  } catch (const NoRoom& error) {
-    return stop_for_want_of_room(error, console);
-  } catch (const scenarios::StoreFull& error) {
-    return stop_for_want_of_room(error, console);
-  }
+  const ExecuteSettings settings{common.threads(),
+                                 arguments.cache.empty() ? out / "recordings" : fs::path(arguments.cache),
+                                 arguments.cache_limit_gb, arguments.estimator_program, arguments.fast};
+  const ExecuteSummary summary = execute(plan, store, settings, console);
   link_latest(out);
   console.say(
       fmt::format("{} cells ok, {} failed, {} killed in {:.1f} s with {} at once; {} recordings made, {} found; "
@@ -148,6 +138,43 @@ int sweep_command(const SweepArguments& arguments, const CommonArguments& common
                   summary.recordings_found, 1000 * summary.overhead_mean_s, 1000 * summary.overhead_max_s,
                   1000 * summary.overhead_recording_mean_s));
   return exit_code_of(store);
+}
+
+/// The nearest folder above that exists.
+fs::path existing(fs::path folder) {
+  while (!fs::exists(folder) && folder.has_relative_path()) folder = folder.parent_path();
+  return folder;
+}
+
+}  // namespace
+
+int sweep_command(const SweepArguments& arguments, const CommonArguments& common) {
+  const Console console(common.quiet);
+  const fs::path file = scenarios::find_beside_scenarios(arguments.sweep, "sweeps", scenario_folders());
+  PlanSettings settings{arguments.sets, arguments.config, arguments.estimator_program, arguments.fast};
+  if (!arguments.shard.empty()) parse_shard(arguments.shard, settings);
+  const SweepPlan plan = make_plan(file, settings);
+  if (arguments.dry_run) {
+    print_plan(plan, common.threads());
+    return 0;
+  }
+  if (arguments.out.empty()) throw core::InputError("sweep: -o is missing; expected a folder for the results");
+  const fs::path out = fs::absolute(arguments.out).lexically_normal();
+  try {
+    return run_plan(plan, out, arguments, common, console);
+  } catch (const Interrupted&) {
+    console.warn("\ninterrupted: finished cells are kept; go on with --resume");
+    return kInterruptedExit;
+  } catch (const std::exception& error) {
+    const bool full = dynamic_cast<const NoRoom*>(&error) || dynamic_cast<const scenarios::StoreFull*>(&error) ||
+                      lacks_room(existing(out), error.what());
+    if (!full) throw;
+    console.warn(
+        fmt::format("error: {}\nno room left on the disk: the sweep stops; finished cells are kept. Make room, then go "
+                    "on with --resume",
+                    error.what()));
+    return 3;
+  }
 }
 
 }  // namespace tarmac::tools
