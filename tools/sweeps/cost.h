@@ -13,8 +13,8 @@ struct CellCost {
   double files_mb = 0;
 };
 
-/// Rates per ray as measured on one core of the machine of tools/bench/README.md: a figure to plan with, right to a
-/// factor of two or three.
+/// Rates per ray as the regression sweep took on one core of a two-core machine with other work on it: a figure to plan
+/// with, right to a factor of two.
 CellCost estimate_cost(const SweepPlan& plan, const PlannedCell& cell);
 double cost_of_world(const SweepPlan& plan, const PlannedWorld& world);  ///< seconds, with all its cells
 
