@@ -1,6 +1,7 @@
 #include "tools/tarmac/console.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +17,12 @@ namespace {
 constexpr int kBarWidth = 28;
 constexpr auto kRedraw = std::chrono::milliseconds(100);
 constexpr double kPlainStep = 0.25;
+
+std::size_t terminal_columns() {
+  winsize size{};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return known ? size.ws_col : 80;
+}
 
 /// The state behind one progress callback; callbacks may come from several threads.
 class Bar {
@@ -39,8 +46,10 @@ class Bar {
     if (!done && now - last_ < kRedraw) return;
     last_ = now;
     const int filled = static_cast<int>(fraction * kBarWidth);
-    fmt::print(stderr, "\r{:<14} [{:=<{}}{:<{}}] {:3.0f} %  {}  {}\x1b[K", label_, "", filled, "", kBarWidth - filled,
-               100 * fraction, remaining(fraction, done), note);
+    std::string line = fmt::format("{:<14} [{:=<{}}{:<{}}] {:3.0f} %  {}  {}", label_, "", filled, "",
+                                   kBarWidth - filled, 100 * fraction, remaining(fraction, done), note);
+    line.resize(std::min(line.size(), terminal_columns() - 1));  // a line that wraps could not be drawn over
+    fmt::print(stderr, "\r{}\x1b[K", line);
     if (done) fmt::print(stderr, "\n");
     std::fflush(stderr);
   }
