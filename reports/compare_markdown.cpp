@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "reports/markdown.h"
+
 namespace tarmac::reports {
 
 namespace {
@@ -22,24 +24,6 @@ std::string number(double value) {
 
 std::string number(const std::optional<double>& value) {
   return value ? number(*value) : "n/a";
-}
-
-/// A cell's text: nothing in it ends the cell, opens markup or names somebody.
-std::string cell(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '\n' || c == '\r')
-      out += ' ';
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '@')
-      out += "&#64;";
-    else if (c == '|' || c == '`' || c == '*' || c == '_' || c == '[' || c == ']' || c == '\\' || c == '~')
-      out += std::string("\\") + c;
-    else
-      out += c;
-  }
-  return out;
 }
 
 std::string percent(double ratio) {
@@ -60,11 +44,11 @@ std::string table(const std::vector<const CompareRow*>& rows) {
     const CompareRow& row = *rows[k];
     const auto& c = row.comparison;
     const bool known = c.difference != metrics::Difference::too_few;
-    text +=
-        fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} of {} | {} |\n", words_of(row), cell(row.where()),
-                    cell(row.metric), number(row.a_median), number(row.b_median), c.pairs ? percent(c.ratio) : "n/a",
-                    known ? fmt::format("{} to {}", number(c.low), number(c.high)) : "n/a", row.b_better, row.seeds,
-                    known ? p_value(c.p_adjusted) : "n/a");
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} of {} | {} |\n", words_of(row),
+                        markdown_cell(row.where()), markdown_cell(row.metric), number(row.a_median),
+                        number(row.b_median), c.pairs ? percent(c.ratio) : "n/a",
+                        known ? fmt::format("{} to {}", number(c.low), number(c.high)) : "n/a", row.b_better, row.seeds,
+                        known ? p_value(c.p_adjusted) : "n/a");
   }
   if (rows.size() > kMostRows) text += fmt::format("\nand {} more\n", rows.size() - kMostRows);
   return text;
@@ -81,8 +65,8 @@ std::string not_compared(const CompareInput& input) {
   for (const CompareMissing& line : input.missing) {
     counts[line.kind] += line.count;
     if (++lines <= kMostRows)
-      list +=
-          fmt::format("- {}: {}{}\n", line.kind, cell(line.what), line.detail.empty() ? "" : ": " + cell(line.detail));
+      list += fmt::format("- {}: {}{}\n", line.kind, markdown_cell(line.what),
+                          line.detail.empty() ? "" : ": " + markdown_cell(line.detail));
   }
   if (lines > kMostRows) list += fmt::format("- and {} more lines\n", lines - kMostRows);
   std::string title = "Not compared: ";
@@ -98,10 +82,11 @@ std::string not_compared(const CompareInput& input) {
 
 std::string compare_markdown(const CompareInput& input, const std::string& link) {
   const CompareSummary summary = summary_of(input);
-  std::string text = fmt::format("### tarmac compare: {} against {}\n\n", cell(input.b.label), cell(input.a.label));
-  text += fmt::format("**{}**\n\n", cell(summary.sentence));
-  if (!summary.note.empty()) text += cell(summary.note) + "\n\n";
-  if (!link.empty()) text += fmt::format("The page: {}\n\n", cell(link));
+  std::string text =
+      fmt::format("### tarmac compare: {} against {}\n\n", markdown_cell(input.b.label), markdown_cell(input.a.label));
+  text += fmt::format("**{}**\n\n", markdown_cell(summary.sentence));
+  if (!summary.note.empty()) text += markdown_cell(summary.note) + "\n\n";
+  if (!link.empty()) text += fmt::format("The page: {}\n\n", markdown_cell(link));
   const auto significant = significant_rows(input), others = other_rows(input);
   if (!significant.empty()) text += table(significant) + "\n";
   if (!others.empty()) text += folded(fmt::format("Not significant ({})", others.size()), table(others));

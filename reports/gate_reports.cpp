@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/markdown.h"
+
 namespace tarmac::reports {
 namespace {
 
@@ -29,25 +31,8 @@ std::size_t character_at(const std::string& text, std::size_t i) {
   return 0;
 }
 
-/// A cell of a Markdown table: one line, no bars, no HTML.
-std::string cell(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '|' || c == '\\' || c == '`' || c == '*' || c == '_' || c == '[' || c == ']') out += '\\';
-    if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (c == '&') {
-      out += "&amp;";
-    } else if (c == '\n') {
-      out += ' ';
-    } else if (static_cast<unsigned char>(c) >= 0x20) {
-      out += c;
-    }
-  }
-  return out;
-}
+constexpr std::size_t kMostRows = 200;     ///< of the Markdown: a comment has a largest size
+constexpr std::size_t kMostEvidence = 50;  ///< lines
 
 std::string words_of(const GateReportRow& row) {
   return fmt::format("{} · {} · {}", row.case_name, row.estimator, row.metric);
@@ -59,25 +44,40 @@ constexpr const char* kTableHead =
 
 std::string table_line(const GateReportRow& row) {
   const std::string unit = row.unit.empty() ? "" : " " + row.unit;
-  return fmt::format("| {} | {}{} | {} | {} | {} | {} | {} | **{}**: {} |\n", cell(words_of(row)),
-                     value_text(row.value), cell(unit), value_text(row.baseline), percent_text(row.change_percent),
-                     interval_text(row), p_text(row.p_adjusted), detectable_text(row.detectable_percent),
-                     name_of(row.verdict), cell(row.reason.empty() ? row.rule : row.reason));
+  return fmt::format("| {} | {}{} | {} | {} | {} | {} | {} | **{}**: {} |\n", markdown_cell(words_of(row)),
+                     value_text(row.value), markdown_cell(unit), value_text(row.baseline),
+                     percent_text(row.change_percent), interval_text(row), p_text(row.p_adjusted),
+                     detectable_text(row.detectable_percent), name_of(row.verdict),
+                     markdown_cell(row.reason.empty() ? row.rule : row.reason));
 }
 
-std::string table_of(const GateReport& report, GateVerdict verdict) {
+/// A table of the rows with that verdict; what is shown is taken from `room`, and what does not fit is counted.
+std::string table_of(const GateReport& report, GateVerdict verdict, std::size_t& room) {
   std::string lines;
-  for (const GateReportRow& row : report.rows)
-    if (row.verdict == verdict) lines += table_line(row);
-  return lines.empty() ? "" : kTableHead + lines + "\n";
+  std::size_t left_out = 0;
+  for (const GateReportRow& row : report.rows) {
+    if (row.verdict != verdict) continue;
+    if (room == 0) {
+      ++left_out;
+      continue;
+    }
+    lines += table_line(row);
+    --room;
+  }
+  std::string text = lines.empty() ? "" : kTableHead + lines + "\n";
+  if (left_out > 0) text += fmt::format("{} more rows ({}) are left out here.\n\n", left_out, name_of(verdict));
+  return text;
 }
 
 std::string evidence_of(const GateReport& report) {
   std::string lines;
+  std::size_t count = 0;
   for (const GateReportRow& row : report.rows) {
     if (row.verdict != GateVerdict::fail && row.verdict != GateVerdict::report_only) continue;
-    for (const std::string& line : row.evidence) lines += fmt::format("- {}\n", cell(line));
+    for (const std::string& line : row.evidence)
+      if (++count <= kMostEvidence) lines += fmt::format("- {}\n", markdown_cell(line));
   }
+  if (count > kMostEvidence) lines += fmt::format("- {} more lines are left out here\n", count - kMostEvidence);
   return lines.empty() ? "" : "Logs and commands of the runs that failed:\n\n" + lines + "\n";
 }
 
@@ -165,25 +165,41 @@ std::string junit_xml(const GateReport& report) {
 }
 
 std::string gate_markdown(const GateReport& report, const std::string& link) {
-  std::string text = fmt::format("{} **Gate {}**\n\n", report.failed() ? "❌" : "✅", cell(headline(report)));
-  for (const std::string& note : report.notes) text += fmt::format("> {}\n\n", cell(note));
-  text += table_of(report, GateVerdict::fail);
-  if (const std::string reds = table_of(report, GateVerdict::report_only); !reds.empty())
-    text += "Red, and reported only for now:\n\n" + reds;
-  if (const std::string open = table_of(report, GateVerdict::inconclusive); !open.empty())
+  std::string text = fmt::format("{} **Gate {}**\n\n", report.failed() ? "❌" : "✅", markdown_cell(headline(report)));
+  for (const std::string& note : report.notes) text += fmt::format("> {}\n\n", markdown_cell(note));
+  std::size_t room = kMostRows;
+  text += table_of(report, GateVerdict::fail, room);
+  const std::string reds = table_of(report, GateVerdict::report_only, room);
+  if (!reds.empty()) text += "Red, and reported only for now:\n\n" + reds;
+  const std::string open = table_of(report, GateVerdict::inconclusive, room);
+  if (!open.empty())
     text +=
         "Inconclusive: not shown to be worse, and not shown not to be. \"Detectable\" is the worsening that would "
         "have been red in 80 % of such comparisons; a smaller one can go unseen.\n\n" +
         open;
   text += evidence_of(report);
-  if (const std::string passes = table_of(report, GateVerdict::pass); !passes.empty())
+  const std::string passes = table_of(report, GateVerdict::pass, room);
+  if (!passes.empty())
     text += fmt::format("<details><summary>{} rows pass</summary>\n\n{}</details>\n\n", report.count(GateVerdict::pass),
                         passes);
   if (!report.build.empty())
-    text += fmt::format("Build {}{}.", cell(report.build),
-                        report.baseline_build.empty() ? "" : ", baseline of " + cell(report.baseline_build));
+    text += fmt::format("Build {}{}.", markdown_cell(report.build),
+                        report.baseline_build.empty() ? "" : ", baseline of " + markdown_cell(report.baseline_build));
   if (!link.empty()) text += fmt::format(" [Full report](<{}>)", link);
   return text + "\n";
+}
+
+std::string junit_error_xml(const std::string& gate, const std::string& message) {
+  constexpr const char* kCounts = "tests=\"1\" failures=\"0\" errors=\"1\" skipped=\"0\"";
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {0}>\n  <testsuite name=\"gate.{1}\" {0} time=\"0\">\n"
+      "    <testcase classname=\"gate.{1}\" name=\"input\" time=\"0\">\n"
+      "      <error type=\"input\" message=\"{2}\">{2}</error>\n    </testcase>\n  </testsuite>\n</testsuites>\n",
+      kCounts, xml_escaped(gate), xml_escaped(message));
+}
+
+std::string gate_error_markdown(const std::string& gate, const std::string& message) {
+  return fmt::format("❌ **Gate {}: nothing was judged**\n\n{}\n", markdown_cell(gate), markdown_cell(message));
 }
 
 std::string xml_escaped(const std::string& text) {

@@ -49,9 +49,13 @@ std::string headline(const GateReport& report);
 /// have said in system-out.
 std::string junit_xml(const GateReport& report);
 
-/// Verdict line first, then what is red, then what is inconclusive; passes are folded. `link` goes to the whole report;
-/// empty: none.
+/// Verdict line first, then what is red, then what is inconclusive; passes are folded. 200 rows at most, in that order,
+/// and how many more there are. `link` goes to the whole report; empty: none.
 std::string gate_markdown(const GateReport& report, const std::string& link);
+
+/// The same two when nothing could be judged: one test case that is an error, and one line.
+std::string junit_error_xml(const std::string& gate, const std::string& message);
+std::string gate_error_markdown(const std::string& gate, const std::string& message);
 
 /// Text as XML's character data and attribute value: escapes markup, and writes what XML 1.0 cannot hold (control
 /// characters, bytes that are no UTF-8) as "\x1b".

@@ -160,22 +160,6 @@ Baseline make_baseline(std::span<const CellResult> results, const std::vector<st
   return baseline;
 }
 
-const MetricValue* find_value(const CellResult& result, const std::string& metric, const std::string& estimate) {
-  const MetricValue* found = nullptr;
-  for (const MetricValue& value : result.metrics) {
-    if (value.metric != metric) continue;
-    if (!estimate.empty()) {
-      if (value.estimate == estimate) return &value;
-      continue;
-    }
-    // A number beats none, and causal comes first.
-    const bool better = !found || (!found->value && value.value) ||
-                        (found->value.has_value() == value.value.has_value() && value.estimate == "causal");
-    if (better) found = &value;
-  }
-  return found;
-}
-
 BaselineDifference difference_of(const Baseline& before, const Baseline& after) {
   BaselineDifference difference;
   std::set<BaselineKey> keys;

@@ -52,9 +52,6 @@ void save_baseline(const std::filesystem::path& file, const Baseline& baseline);
 /// sweep).
 Baseline make_baseline(std::span<const CellResult> results, const std::vector<std::string>& metrics);
 
-/// The headline value: causal where there is one, else final; with `estimate`, that one. nullptr: no such row.
-const MetricValue* find_value(const CellResult& result, const std::string& metric, const std::string& estimate = "");
-
 /// How two baselines differ, a line each, as `tarmac baseline update` prints it.
 struct BaselineChange {
   enum class Kind { changed, added, gone };

@@ -56,4 +56,11 @@ struct CellResult {
   std::vector<MetricValue> metrics;
 };
 
+/// Of the estimates that a cell has rows of for one metric, the headline is the one with the lowest rank: causal, be it
+/// n/a, and final only where there is no causal row. Whoever shows or judges one value a cell goes by this.
+int headline_rank(const std::string& estimate);
+
+/// The headline row of a metric; with `estimate`, the row of that one. nullptr: no such row.
+const MetricValue* find_value(const CellResult& result, const std::string& metric, const std::string& estimate = "");
+
 }  // namespace tarmac::scenarios

@@ -64,24 +64,36 @@ Grouping group_cells(Database& db, const ResultFilter& filter, const std::vector
   return grouping;
 }
 
-/// Adds one metric's values. A method that has no causal estimate counts by its final one.
+/// What is stored under a metric's name.
+struct MetricName {
+  std::int64_t id = 0;
+  std::string estimate, unit;
+};
+
+/// Those that count for the headline first.
+std::vector<MetricName> names_of(Database& db, const std::string& metric) {
+  Statement& rows = db.cached("select id, estimate, unit from metric_names where metric = ? order by estimate, id");
+  rows.with({metric});
+  std::vector<MetricName> names;
+  while (rows.step()) names.push_back({rows.integer(0), rows.text(1), rows.text(2)});
+  std::stable_sort(names.begin(), names.end(), [](const MetricName& a, const MetricName& b) {
+    return headline_rank(a.estimate) < headline_rank(b.estimate);
+  });
+  return names;
+}
+
+/// Adds one metric's headline values.
 void add_metric(Database& db, const std::string& metric, Grouping& grouping) {
   for (CellGroup& group : grouping.groups) group.metrics.emplace_back();
   std::vector<bool> seen(grouping.group_of.size(), false);
-  Statement& names = db.cached(
-                           "select id, unit from metric_names where metric = ? order by estimate <> 'causal', "
-                           "estimate, id")
-                         .with({metric});
-  while (names.step()) {
-    const std::string unit = names.text(1);
-    Statement& rows =
-        db.cached("select cell, value, status from metric_values where metric = ?").with({names.integer(0)});
+  for (const MetricName& name : names_of(db, metric)) {
+    Statement& rows = db.cached("select cell, value, status from metric_values where metric = ?").with({name.id});
     while (rows.step()) {
       const auto cell = static_cast<std::size_t>(rows.integer(0));
       if (grouping.group_of[cell] < 0 || seen[cell]) continue;
       seen[cell] = true;
       CellGroup::Metric& to = grouping.groups[static_cast<std::size_t>(grouping.group_of[cell])].metrics.back();
-      if (to.unit.empty()) to.unit = unit;
+      if (to.unit.empty()) to.unit = name.unit;
       if (!rows.null(1)) {
         to.values.push_back(rows.real(1));
       } else if (to.missing.empty()) {

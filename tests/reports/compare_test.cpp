@@ -190,7 +190,7 @@ TEST(CompareMarkdown, NothingInATextEndsACellOrCallsSomebody) {
   CompareRow r = row("a|b", CompareVerdict::worse, 2);
   r.case_name = "x\n@all <b>";
   const std::string text = compare_markdown(input({r}));
-  EXPECT_THAT(text, HasSubstr("| worse | x &#64;all &lt;b>, kiss-icp | a\\|b |"));
+  EXPECT_THAT(text, HasSubstr("| worse | x &#64;all &lt;b&gt;, kiss-icp | a\\|b |"));
 }
 
 TEST(CompareMarkdown, ALongTableEndsWithACount) {

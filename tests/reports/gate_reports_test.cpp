@@ -75,6 +75,45 @@ TEST(GateMarkdown, TextCannotBreakTheTable) {
   EXPECT_EQ(text.find('\x1b'), std::string::npos);
 }
 
+TEST(GateMarkdown, NobodyIsNamedByATextInIt) {
+  GateReport r = report();
+  r.rows[0].case_name = "@everybody";
+  EXPECT_THAT(gate_markdown(r, ""), HasSubstr("&#64;everybody"));
+  EXPECT_EQ(gate_markdown(r, "").find('@'), std::string::npos);
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+TEST(GateMarkdown, HoldsTwoHundredRowsRedsFirstAndCountsTheRest) {
+  GateReport r = report();
+  r.rows.clear();
+  for (int k = 0; k < 150; ++k) {
+    r.rows.push_back(row(GateVerdict::pass, ""));
+    r.rows.push_back(row(GateVerdict::inconclusive, "who knows"));
+    r.rows.push_back(row(GateVerdict::fail, "worse"));
+    r.rows.back().evidence = {"a log"};
+  }
+  const std::string text = gate_markdown(r, "");
+  EXPECT_EQ(count_of(text, "| **FAIL**"), 150u);
+  EXPECT_EQ(count_of(text, "| **inconclusive**"), 50u);
+  EXPECT_EQ(count_of(text, "| **pass**"), 0u);
+  EXPECT_THAT(text, HasSubstr("100 more rows (inconclusive) are left out here."));
+  EXPECT_THAT(text, HasSubstr("150 more rows (pass) are left out here."));
+  EXPECT_THAT(text, HasSubstr("100 more lines are left out here"));
+  EXPECT_LT(text.size(), 65536u) << "the most that a comment on GitHub can hold";
+}
+
+TEST(GateErrors, AreOneTestCaseAndOneLine) {
+  const std::string xml = junit_error_xml("regression", "b.yaml: <no such file>");
+  EXPECT_THAT(xml, HasSubstr("tests=\"1\" failures=\"0\" errors=\"1\""));
+  EXPECT_THAT(xml, HasSubstr("<error type=\"input\" message=\"b.yaml: &lt;no such file&gt;\">"));
+  EXPECT_THAT(gate_error_markdown("regression", "a @b"), HasSubstr("regression: nothing was judged**\n\na &#64;b"));
+}
+
 TEST(GateXml, EscapesWhatXmlCannotHold) {
   EXPECT_EQ(xml_escaped("a<b>&\"c\""), "a&lt;b&gt;&amp;&quot;c&quot;");
   EXPECT_EQ(xml_escaped(std::string("\x00\x1b", 2)), "\\x00\\x1b");

@@ -127,15 +127,17 @@ TEST(Baseline, TheDifferenceSaysWhatChangedWhatIsNewAndWhatIsGone) {
   EXPECT_EQ(difference_of(before, before).unchanged, 2u);
 }
 
-TEST(FindValue, TheHeadlineIsCausalWhereItHasANumber) {
+TEST(FindValue, TheHeadlineIsCausalWhereThereIsSuchARow) {
   CellResult result;
   result.metrics = {metric("m", 1.0, "final"), metric("m", 2.0)};
   EXPECT_EQ(*find_value(result, "m")->value, 2);
   EXPECT_EQ(*find_value(result, "m", "final")->value, 1);
   result.metrics[1].value = std::nullopt;
-  EXPECT_EQ(*find_value(result, "m")->value, 1) << "a batch method has a final estimate only";
+  EXPECT_EQ(find_value(result, "m")->value, std::nullopt) << "n/a is not replaced by the final estimate";
   EXPECT_EQ(find_value(result, "m", "causal")->value, std::nullopt);
   EXPECT_EQ(find_value(result, "other"), nullptr);
+  result.metrics.pop_back();
+  EXPECT_EQ(*find_value(result, "m")->value, 1) << "a batch method has a final estimate only";
 }
 
 }  // namespace

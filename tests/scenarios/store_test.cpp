@@ -40,6 +40,21 @@ void expect_equal(const MetricValue& a, const MetricValue& b) {
             std::tie(b.estimate, b.metric, b.value, b.unit, b.ci_low, b.ci_high, b.status, b.deterministic));
 }
 
+TEST(Store, KnowsAShardFromTheWholePlan) {
+  std::vector<std::string> keys;
+  for (const Cell& one : cells(4)) keys.push_back(one.key);
+  const std::string whole = plan_hash_of(keys);
+  std::reverse(keys.begin(), keys.end());
+  EXPECT_EQ(plan_hash_of(keys), whole) << "in any order";
+  const auto holds_all = [&](std::size_t n) {
+    const TemporaryFolder folder;
+    return Store::create(folder.path(), {"regression", whole, "build"}, "", cells(n)).holds_whole_plan();
+  };
+  EXPECT_TRUE(holds_all(4));
+  EXPECT_FALSE(holds_all(3));
+  EXPECT_FALSE(holds_all(5)) << "other cells than the plan's";
+}
+
 TEST(Store, GivesBackWhatWasPutIn) {
   const TemporaryFolder folder;
   {

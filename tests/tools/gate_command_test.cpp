@@ -26,19 +26,22 @@ class GateCommandTest : public testing::Test {
                                          "kiss-icp, metric: ") +
                                  kRpe + ", non_inferior: {min_pairs: 4}}\n");
   }
-  /// Four seeds with these values; the last cells stay unfinished when there are fewer.
+  /// Seeds with these values; the last cells stay unfinished when there are fewer values than cells. The sweep has four
+  /// cells: with fewer the store is a shard's.
   fs::path store(const std::string& name, const std::vector<double>& values, const std::string& sweep = "s",
-                 const std::string& last_status = "ok") {
-    std::vector<Cell> cells(4);
+                 const std::string& last_status = "ok", std::size_t cells_here = 4) {
+    std::vector<std::string> plan;
+    for (std::size_t k = 0; k < 4; ++k) plan.push_back("000000000000000" + std::to_string(k));
+    std::vector<Cell> cells(cells_here);
     for (std::size_t k = 0; k < cells.size(); ++k) {
-      cells[k].key = "000000000000000" + std::to_string(k);
+      cells[k].key = plan[k];
       cells[k].world = cells[k].key;
       cells[k].block = cells[k].case_name = "a";
       cells[k].scenario = "drive";
       cells[k].seed = k + 1;
       cells[k].estimator = "kiss-icp";
     }
-    Store made = Store::create(folder_ / name, {sweep, "plan", "build"}, "name: s\n", cells);
+    Store made = Store::create(folder_ / name, {sweep, plan_hash_of(plan), "build"}, "name: s\n", cells);
     made.start(false);
     for (std::size_t k = 0; k < values.size(); ++k) {
       MetricValue value;
@@ -94,6 +97,36 @@ TEST_F(GateCommandTest, BadInputIsAnInputError) {
   ASSERT_EQ(update(before), 0);
   EXPECT_THROW(gate(folder_ / "none"), InputError);
   EXPECT_THROW(gate(store("other", {1, 2, 3, 4}, "another-sweep")), InputError);
+}
+
+TEST_F(GateCommandTest, WhyNothingWasJudgedStandsInTheReports) {
+  const fs::path before = store("before", {1, 2, 3, 4});
+  tarmac::core::write_file(folder_ / "j.xml", "an earlier run's");
+  EXPECT_THROW(gate(before), InputError) << "no baseline yet";
+  EXPECT_THAT(tarmac::core::read_file(folder_ / "j.xml"), HasSubstr("errors=\"1\""));
+  EXPECT_THAT(tarmac::core::read_file(folder_ / "j.xml"), HasSubstr("<error type=\"input\""));
+  EXPECT_THAT(tarmac::core::read_file(folder_ / "j.xml"), HasSubstr("b.yaml"));
+  EXPECT_THAT(tarmac::core::read_file(folder_ / "g.md"), HasSubstr("nothing was judged"));
+  ASSERT_EQ(update(before), 0);
+  tarmac::core::write_file(folder_ / "gate.yaml", "name: g\nrows: 3\n");
+  EXPECT_THROW(gate(before), InputError);
+  EXPECT_THAT(tarmac::core::read_file(folder_ / "j.xml"), HasSubstr("gate.yaml:2"));
+}
+
+TEST_F(GateCommandTest, AShardAloneIsRedAndNoBaseline) {
+  ASSERT_EQ(update(store("before", {1, 2, 3, 4})), 0);
+  const fs::path shard = store("shard", {1, 2, 3}, "s", "ok", 3);
+  EXPECT_EQ(gate(shard), 1);
+  EXPECT_THAT(tarmac::core::read_file(folder_ / "j.xml"), HasSubstr("only 3 cells of the sweep: a shard"));
+  const std::string baseline = tarmac::core::read_file(folder_ / "b.yaml");
+  try {
+    update(shard);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("only a shard of the sweep (merge all shards first)"));
+  }
+  EXPECT_EQ(tarmac::core::read_file(folder_ / "b.yaml"), baseline);
+  EXPECT_EQ(update(shard, true), 0);
 }
 
 TEST_F(GateCommandTest, ABaselineIsNotMadeOfHalfASweep) {

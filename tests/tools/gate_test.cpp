@@ -120,6 +120,69 @@ TEST_F(GateTest, RelativeRowsCompareMedians) {
   EXPECT_EQ(at(1.5, "max_decrease_percent: 10").verdict, GateVerdict::fail);
 }
 
+/// Seeds 1, 2, ... with these time lags: of either sign, and the nearer to 0 the better.
+std::vector<CellResult> with_lag(std::vector<double> lags_ms) {
+  std::vector<CellResult> results;
+  for (std::size_t k = 0; k < lags_ms.size(); ++k) {
+    results.push_back(cell("a", "kiss-icp", k + 1, 1));
+    results.back().metrics.push_back(metric("time_lag_ms", lags_ms[k], "ms"));
+  }
+  return results;
+}
+
+TEST_F(GateTest, WhatHasASignIsComparedByItsSize) {
+  const auto judged = [&](const std::string& rule, const std::vector<double>& before, const std::vector<double>& now) {
+    baseline_ = make_baseline(with_lag(before), {"time_lag_ms"});
+    return only(row(rule, "time_lag_ms"), with_lag(now));
+  };
+  const std::string relative = "relative: {max_increase_percent: 10}";
+  EXPECT_EQ(judged(relative, {0.1}, {-50}).verdict, GateVerdict::fail) << "five hundred times the lag";
+  EXPECT_NEAR(*judged(relative, {0.1}, {-50}).change_percent, 100 * (50 / 0.1 - 1), 1e-6);
+  EXPECT_EQ(judged(relative, {-50}, {0.1}).verdict, GateVerdict::pass);
+  EXPECT_EQ(judged(relative, {-2}, {-2.1}).verdict, GateVerdict::pass);
+  EXPECT_EQ(judged(relative, {-2}, {-2.3}).verdict, GateVerdict::fail);
+  EXPECT_EQ(judged(relative, {-2, 2, 2}, {2, -2, 2}).verdict, GateVerdict::pass);
+  EXPECT_THAT(judged(relative, {0.1}, {-50}).rule, HasSubstr("absolute values"));
+  EXPECT_THAT(judged(relative, {0.1}, {0.1}).rule, testing::Not(HasSubstr("absolute values")));
+  const std::string paired = "non_inferior: {min_pairs: 3}";
+  EXPECT_EQ(judged(paired, {0.1, 0.2, 0.3}, {-50, -101, -149}).verdict, GateVerdict::fail);
+  EXPECT_EQ(judged(paired, {-50, -101, -149}, {0.1, 0.2, 0.3}).verdict, GateVerdict::pass);
+}
+
+TEST_F(GateTest, BothSidesAreOfOneEstimate) {
+  const auto runs = [](std::optional<double> causal, std::optional<double> final_value) {
+    std::vector<CellResult> results = {cell("a", "kiss-icp", 1, causal)};
+    MetricValue last = metric(kRpe, final_value, "m");
+    last.estimate = "final";
+    results[0].metrics.push_back(last);
+    return results;
+  };
+  const std::string rule = row("relative: {max_increase_percent: 10}");
+  baseline_is(runs(2, 1));
+  EXPECT_EQ(only(rule, runs(2, 5)).verdict, GateVerdict::pass) << "causal against causal";
+  EXPECT_EQ(only(rule, runs(5, 1)).verdict, GateVerdict::fail);
+  EXPECT_EQ(only(rule, runs(std::nullopt, 1)).verdict, GateVerdict::fail) << "n/a is not replaced by final";
+  std::vector<CellResult> final_only = runs(std::nullopt, 1);
+  final_only[0].metrics.erase(final_only[0].metrics.begin());
+  EXPECT_EQ(only(rule, final_only).verdict, GateVerdict::fail) << "the causal estimate is lost";
+  baseline_is(runs(std::nullopt, 1));
+  EXPECT_EQ(only(rule, runs(1, 1)).verdict, GateVerdict::fail) << "causal is never compared with final";
+  baseline_is(final_only);
+  EXPECT_EQ(only(rule, final_only).verdict, GateVerdict::pass) << "a batch method";
+  EXPECT_THAT(only(rule, runs(1, 1)).reason, HasSubstr("baseline update"));
+}
+
+TEST_F(GateTest, OfAShardNothingIsJudged) {
+  const std::vector<CellResult> now = drive("a", 1, 0, 1, 3);
+  baseline_is(now);
+  gate_ = gate_of(row("max: 1e9"), "report_only_until: 2099-12-31\n");
+  const GateReport report =
+      tarmac::tools::judge_gate({&gate_, now, {}, &baseline_, "build", "store", today_, /*whole=*/false});
+  ASSERT_EQ(report.rows.size(), 1u);
+  EXPECT_TRUE(report.failed()) << "also while the gate's own rows are only reported";
+  EXPECT_EQ(report.rows[0].reason, "the store holds only 3 cells of the sweep: a shard; merge all shards first");
+}
+
 TEST_F(GateTest, ARelativeRowHasADefinedOutcomeAtZero) {
   const std::vector<CellResult> zeros = {cell("a", "kiss-icp", 1, 0), cell("a", "kiss-icp", 2, 0)};
   baseline_is(zeros);
@@ -219,6 +282,19 @@ TEST_F(GateTest, AMethodThatCannotStartIsAllowedWhereTheRowSaysSo) {
       << "too few pairs are left";
   now[4].outcome.status = "crashed";
   EXPECT_EQ(only(row("max: 1e9, allow: [not_initialised]"), now).verdict, GateVerdict::fail);
+}
+
+TEST_F(GateTest, AnAllowedOutcomeForgivesItsOwnSeedAndNoOther) {
+  // Seed 3 was not initialised in the baseline either; now seed 7 is missing.
+  std::vector<CellResult> now = drive("a", 1, 0, 1);
+  now[2].outcome.status = "not_initialised";
+  baseline_is(now);
+  now.erase(now.begin() + 6);
+  for (const char* rule : {"relative: {max_increase_percent: 10}", "non_inferior: {min_pairs: 3}"}) {
+    const GateReportRow judged = only(row(std::string(rule) + ", allow: [not_initialised]"), now);
+    EXPECT_EQ(judged.verdict, GateVerdict::fail) << rule;
+    EXPECT_THAT(judged.reason, HasSubstr("seed 7: in the baseline and not in this sweep"));
+  }
 }
 
 TEST_F(GateTest, ACellThatIsNotFinishedFailsItsRow) {

@@ -44,30 +44,33 @@ void fail_for_troubles(const TargetValues& values, GateReportRow& row) {
 Judged judge_target(const GateInput& input, const CellIndex& index, const GateTarget& target) {
   Judged judged;
   judged.gate_row = target.row;
-  judged.lower_is_better = metrics::find_metric(target.metric)->lower_is_better;
+  const metrics::MetricEntry& metric = *metrics::find_metric(target.metric);
+  judged.lower_is_better = metric.lower_is_better;
   GateReportRow& row = judged.row;
   row.case_name = target.case_name;
   row.estimator = target.estimator;
   row.metric = target.metric;
-  row.unit = metrics::find_metric(target.metric)->unit;
+  row.unit = metric.unit;
   row.rule = words_of(*target.row);
   if (!target.missing.empty()) {
     row.verdict = GateVerdict::fail;
     row.reason = target.missing;
     return judged;
   }
-  const TargetValues values = values_of(input, target, index.cells_of(target.case_name, target.estimator));
+  const TargetCells& cells = index.cells_of(target.case_name, target.estimator);
+  const std::string estimate = estimate_of(input, target, cells);
+  const TargetValues values = values_of(input, target, cells, estimate);
   row.evidence = values.evidence;
-  const SeedValues* baseline = baseline_of(input, target);
+  const SeedValues* baseline = baseline_of(input, target, estimate);
+  const metrics::Better better = metrics::better_of(metric);
   if (!values.troubles.empty())
     fail_for_troubles(values, row);
   else if (target.row->absolute)
     judge_absolute(*target.row->absolute, values, row);
   else if (target.row->relative)
-    judge_relative(*target.row->relative, values, baseline, row);
+    judge_relative(*target.row->relative, values, baseline, better, row);
   else
-    judged.paired =
-        test_paired(*target.row->non_inferior, values, baseline, input.gate->alpha, judged.lower_is_better, row);
+    judged.paired = test_paired(*target.row->non_inferior, values, baseline, input.gate->alpha, better, row);
   return judged;
 }
 
@@ -111,6 +114,20 @@ std::string recordings_note(const GateInput& input) {
                      differing.size(), shared.size());
 }
 
+/// Of a shard nothing is judged: what it lacks is not lost, and what it has says nothing of the rest.
+GateReportRow shard_row(const GateInput& input) {
+  GateReportRow row;
+  const std::size_t cells = input.results.size() + input.unfinished.size();
+  row.case_name = "the whole sweep";
+  row.estimator = "all";
+  row.metric = "cells";
+  row.rule = "the store holds every cell of the sweep";
+  row.verdict = GateVerdict::fail;
+  row.value = static_cast<double>(cells);
+  row.reason = fmt::format("the store holds only {} cells of the sweep: a shard; merge all shards first", cells);
+  return row;
+}
+
 }  // namespace
 
 void check_metrics(const scenarios::GateFile& gate) {
@@ -132,20 +149,23 @@ std::vector<std::string> metrics_held_to_baseline(const scenarios::GateFile& gat
 
 reports::GateReport judge_gate(const GateInput& input) {
   check_metrics(*input.gate);
+  GateReport report;
+  report.gate = input.gate->name;
+  report.why = input.gate->why;
+  report.build = input.build;
+  if (input.baseline) report.baseline_build = input.baseline->build;
+  if (!input.whole) {
+    report.rows.push_back(shard_row(input));
+    return report;
+  }
   const CellIndex index(input);
   std::vector<Judged> rows;
   for (const scenarios::GateRow& row : input.gate->rows)
     for (const GateTarget& target : index.targets_of(row)) rows.push_back(judge_target(input, index, target));
   judge_tested(*input.gate, rows);
 
-  GateReport report;
-  report.gate = input.gate->name;
-  report.why = input.gate->why;
-  report.build = input.build;
-  if (input.baseline) {
-    report.baseline_build = input.baseline->build;
+  if (input.baseline)
     if (std::string note = recordings_note(input); !note.empty()) report.notes.push_back(std::move(note));
-  }
   for (Judged& judged : rows) {
     report_only(judged.gate_row->report_only_until, input.today, judged.row);
     report.rows.push_back(std::move(judged.row));

@@ -20,10 +20,12 @@ struct GateInput {
   std::string build;                              ///< that the results come from
   std::filesystem::path folder;                   ///< of the store: where logs lie
   std::string today;                              ///< "2026-12-31"
+  bool whole = true;                              ///< false: a shard's results, of which no row can be judged
 };
 
 /// Rows in the gate file's order; what a row's patterns select in order of case, estimator, metric. A row (or an entry
-/// of its lists) that selects nothing is a failed row. Throws InputError when a row names a metric that there is not.
+/// of its lists) that selects nothing is a failed row; of a shard there is one row, and it failed. Throws InputError
+/// when a row names a metric that there is not.
 reports::GateReport judge_gate(const GateInput& input);
 
 /// Throws InputError with the row's place and did-you-mean when a row names a metric that there is not.

@@ -45,25 +45,41 @@ std::string lost_since(const TargetValues& values, const SeedValues* baseline) {
   std::vector<std::uint64_t> gone, not_available;
   for (const auto& [seed, before] : *baseline) {
     const auto now = values.values.find(seed);
+    if (values.allowed.contains(seed)) continue;
     if (now == values.values.end())
       gone.push_back(seed);
     else if (before && !now->second)
       not_available.push_back(seed);
   }
   if (!not_available.empty()) return fmt::format("{}: a number in the baseline and n/a now", seed_list(not_available));
-  // Seeds of a row that allows not_initialised may be gone for that reason.
-  if (gone.size() > values.allowed) return fmt::format("{}: in the baseline and not in this sweep", seed_list(gone));
+  if (!gone.empty()) return fmt::format("{}: in the baseline and not in this sweep", seed_list(gone));
   return "";
 }
 
 /// Both sides' numbers, of the seeds where both have one.
-void pair_up(const SeedValues& now, const SeedValues& before, std::vector<double>& new_values,
-             std::vector<double>& old_values) {
+struct Pairs {
+  std::vector<double> now, before;
+};
+
+Pairs pair_up(const SeedValues& now, const SeedValues& before) {
+  Pairs pairs;
   for (const auto& [seed, value] : now)
     if (const auto old = before.find(seed); old != before.end() && value && old->second) {
-      new_values.push_back(*value);
-      old_values.push_back(*old->second);
+      pairs.now.push_back(*value);
+      pairs.before.push_back(*old->second);
     }
+  return pairs;
+}
+
+/// As `tarmac compare` does it: what has a sign is the better the nearer it is to 0, so sizes are compared.
+void compare_sizes(metrics::Better better, Pairs& pairs, GateReportRow& row) {
+  const auto has_negative = [](const std::vector<double>& values) {
+    return std::any_of(values.begin(), values.end(), [](double v) { return v < 0; });
+  };
+  if (better != metrics::Better::lower || !(has_negative(pairs.now) || has_negative(pairs.before))) return;
+  for (double& v : pairs.now) v = std::abs(v);
+  for (double& v : pairs.before) v = std::abs(v);
+  row.rule += " (absolute values)";
 }
 
 double statistic_of(GateStatistic of, const std::vector<double>& values, bool for_max) {
@@ -137,10 +153,11 @@ void judge_absolute(const scenarios::AbsoluteRule& rule, const TargetValues& val
 }
 
 void judge_relative(const scenarios::RelativeRule& rule, const TargetValues& values, const SeedValues* baseline,
-                    GateReportRow& row) {
+                    metrics::Better better, GateReportRow& row) {
   if (std::string lost = lost_since(values, baseline); !lost.empty()) return fail(row, std::move(lost));
-  std::vector<double> now, before;
-  pair_up(values.values, *baseline, now, before);
+  Pairs pairs = pair_up(values.values, *baseline);
+  compare_sizes(better, pairs, row);
+  const auto& [now, before] = pairs;
   if (now.empty()) return fail(row, "no seed has a number on both sides: nothing was compared");
   row.pairs = now.size();
   row.value = scenarios::median_of(now);
@@ -162,14 +179,16 @@ void judge_relative(const scenarios::RelativeRule& rule, const TargetValues& val
 }
 
 PairedRow test_paired(const scenarios::NonInferiorRule& rule, const TargetValues& values, const SeedValues* baseline,
-                      double alpha, bool lower_is_better, GateReportRow& row) {
+                      double alpha, metrics::Better better, GateReportRow& row) {
+  const bool lower_is_better = better == metrics::Better::lower;
   PairedRow paired;
   if (std::string lost = lost_since(values, baseline); !lost.empty()) {
     fail(row, std::move(lost));
     return paired;
   }
-  std::vector<double> now, before;
-  pair_up(values.values, *baseline, now, before);
+  Pairs pairs = pair_up(values.values, *baseline);
+  compare_sizes(better, pairs, row);
+  const auto& [now, before] = pairs;
   row.pairs = now.size();
   if (now.size() < std::max<std::size_t>(rule.min_pairs, 2)) {
     fail(row, fmt::format("{} pairs of seeds, and at least {} are wanted: run more seeds, or write the baseline anew "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 namespace tarmac::tools {
 namespace {
@@ -28,12 +29,13 @@ void add_trouble(const GateInput& input, const scenarios::CellResult& result, Ta
     values.evidence.push_back(fmt::format("seed {}: again: {}", result.cell.seed, outcome.command));
 }
 
-void add_value(const GateTarget& target, const scenarios::CellResult& result, TargetValues& values) {
+void add_value(const GateTarget& target, const scenarios::CellResult& result, const std::string& estimate,
+               TargetValues& values) {
   const std::uint64_t seed = result.cell.seed;
-  const scenarios::MetricValue* value = scenarios::find_value(result, target.metric, target.row->estimate);
+  const scenarios::MetricValue* value = scenarios::find_value(result, target.metric, estimate);
   if (!value) {
     values.values[seed] = std::nullopt;
-    values.evidence.push_back(fmt::format("seed {}: the evaluation has no {}", seed, target.metric));
+    values.evidence.push_back(fmt::format("seed {}: the evaluation has no {} ({})", seed, target.metric, estimate));
     return;
   }
   values.unit = value->unit;
@@ -74,7 +76,8 @@ std::vector<GateTarget> CellIndex::targets_of(const scenarios::GateRow& row) con
     const bool has_cells = !pair.cells.finished.empty() || !pair.cells.unfinished.empty();
     for (const std::string& metric : row.metrics) {
       const GateTarget target{&row, case_name, estimator, metric, ""};
-      if (!has_cells && (row.absolute || !baseline_of(input_, target))) continue;
+      if (!has_cells && (row.absolute || !baseline_of(input_, target, estimate_of(input_, target, pair.cells))))
+        continue;
       targets.push_back(target);
       places_met.insert(place);
       estimators_met.insert(estimator);
@@ -102,16 +105,38 @@ const TargetCells& CellIndex::cells_of(const std::string& case_name, const std::
   return found == pairs_.end() ? kNone : found->second.cells;
 }
 
-TargetValues values_of(const GateInput& input, const GateTarget& target, const TargetCells& cells) {
+std::string estimate_of(const GateInput& input, const GateTarget& target, const TargetCells& cells) {
+  if (!target.row->estimate.empty()) return target.row->estimate;
+  std::string best;
+  const auto consider = [&](const std::string& estimate) {
+    if (best.empty() || scenarios::headline_rank(estimate) < scenarios::headline_rank(best)) best = estimate;
+  };
+  for (const auto& [seed, result] : cells.finished)
+    if (const scenarios::MetricValue* value = scenarios::find_value(*result, target.metric)) consider(value->estimate);
+  if (input.baseline && !target.row->absolute) {
+    const scenarios::BaselineKey first{target.case_name, target.estimator, target.metric, ""};
+    for (auto at = input.baseline->values.lower_bound(first); at != input.baseline->values.end(); ++at) {
+      const scenarios::BaselineKey& key = at->first;
+      if (std::tie(key.case_name, key.estimator, key.metric) !=
+          std::tie(first.case_name, first.estimator, first.metric))
+        break;
+      consider(key.estimate);
+    }
+  }
+  return best.empty() ? "causal" : best;
+}
+
+TargetValues values_of(const GateInput& input, const GateTarget& target, const TargetCells& cells,
+                       const std::string& estimate) {
   TargetValues values;
   for (const auto& [seed, cell] : cells.unfinished)
     values.troubles.push_back(fmt::format("seed {}: not finished; go on with `tarmac sweep ... --resume`", seed));
   for (const auto& [seed, result] : cells.finished) {
     const std::string& status = result->outcome.status;
     if (status == "ok")
-      add_value(target, *result, values);
+      add_value(target, *result, estimate, values);
     else if (status == "not_initialised" && target.row->allow_not_initialised)
-      ++values.allowed;
+      values.allowed.insert(seed);
     else
       add_trouble(input, *result, values);
   }
@@ -120,21 +145,10 @@ TargetValues values_of(const GateInput& input, const GateTarget& target, const T
   return values;
 }
 
-const SeedValues* baseline_of(const GateInput& input, const GateTarget& target) {
+const SeedValues* baseline_of(const GateInput& input, const GateTarget& target, const std::string& estimate) {
   if (!input.baseline) return nullptr;
-  // The headline is causal where there is one: the order of the two is find_value's.
-  const std::vector<std::string> estimates =
-      target.row->estimate.empty() ? std::vector<std::string>{"causal", "final"} : std::vector{target.row->estimate};
-  const SeedValues* found = nullptr;
-  for (const std::string& estimate : estimates) {
-    const auto at = input.baseline->values.find({target.case_name, target.estimator, target.metric, estimate});
-    if (at == input.baseline->values.end()) continue;
-    const bool has_number =
-        std::any_of(at->second.begin(), at->second.end(), [](const auto& value) { return value.second.has_value(); });
-    if (!found || has_number) found = &at->second;
-    if (has_number) break;
-  }
-  return found;
+  const auto at = input.baseline->values.find({target.case_name, target.estimator, target.metric, estimate});
+  return at == input.baseline->values.end() ? nullptr : &at->second;
 }
 
 }  // namespace tarmac::tools

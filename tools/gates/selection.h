@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,12 @@ class CellIndex {
   std::map<std::pair<std::string, std::string>, Pair> pairs_;  ///< by case and estimator
 };
 
-/// Values by seed: empty = n/a. Estimates as scenarios::find_value chooses them.
+/// The estimate that a target's values are of, on both sides: the row's, or the headline of the runs and the baseline
+/// together (a bound looks at the runs alone). So a causal estimate that is lost is n/a, and is not replaced by the
+/// final one.
+std::string estimate_of(const GateInput& input, const GateTarget& target, const TargetCells& cells);
+
+/// Values by seed: empty = n/a.
 using SeedValues = std::map<std::uint64_t, std::optional<double>>;
 
 /// What the runs of a target say before any value is looked at.
@@ -50,11 +56,12 @@ struct TargetValues {
   std::string unit;
   std::vector<std::string> troubles;  ///< why the row fails whatever its values: "seed 3: crashed: ..."
   std::vector<std::string> evidence;  ///< logs and commands of those runs
-  std::size_t allowed = 0;            ///< seeds left out because the row allows their outcome
+  std::set<std::uint64_t> allowed;    ///< seeds left out because the row allows their outcome
 };
-TargetValues values_of(const GateInput& input, const GateTarget& target, const TargetCells& cells);
+TargetValues values_of(const GateInput& input, const GateTarget& target, const TargetCells& cells,
+                       const std::string& estimate);
 
 /// The baseline's values of a target; nullptr: it has none.
-const SeedValues* baseline_of(const GateInput& input, const GateTarget& target);
+const SeedValues* baseline_of(const GateInput& input, const GateTarget& target, const std::string& estimate);
 
 }  // namespace tarmac::tools

@@ -2,6 +2,7 @@
 #include "scenarios/baseline.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -40,8 +41,13 @@ std::vector<std::string> metrics_kept(const BaselineArguments& arguments) {
   return named;
 }
 
-/// What a baseline may not hold, in words; empty: nothing.
-std::string unfit(const std::vector<scenarios::CellResult>& results, std::size_t unfinished) {
+/// What a baseline may not hold, in words; empty: nothing. `shards`: folders without the whole sweep.
+std::string unfit(const std::vector<scenarios::CellResult>& results, std::size_t unfinished,
+                  const std::vector<std::string>& shards) {
+  std::string shard_words;
+  if (!shards.empty())
+    shard_words = fmt::format("{} hold{} only a shard of the sweep (merge all shards first)", fmt::join(shards, ", "),
+                              shards.size() == 1 ? "s" : "");
   std::string first;
   std::size_t failed = 0;
   for (const scenarios::CellResult& result : results) {
@@ -50,8 +56,9 @@ std::string unfit(const std::vector<scenarios::CellResult>& results, std::size_t
       first = fmt::format(" (the first: {}, {}, seed {}: {})", result.cell.case_name, result.cell.estimator,
                           result.cell.seed, result.outcome.status);
   }
-  if (failed == 0 && unfinished == 0) return "";
-  return fmt::format("{} cells are not finished and {} failed{}", unfinished, failed, first);
+  if (failed == 0 && unfinished == 0) return shard_words;
+  return fmt::format("{}{}{} cells are not finished and {} failed{}", shard_words, shards.empty() ? "" : "; ",
+                     unfinished, failed, first);
 }
 
 std::string median_text(const std::optional<double>& median, std::size_t seeds) {
@@ -87,25 +94,27 @@ int baseline_update_command(const BaselineArguments& arguments, const CommonArgu
   const std::vector<std::string> metrics = metrics_kept(arguments);
   std::vector<scenarios::CellResult> results;
   std::set<std::string> sweeps, builds;
+  std::vector<std::string> shards;
   std::size_t unfinished = 0;
   for (const std::string& folder : arguments.folders) {
     const scenarios::Store store = scenarios::Store::open(folder, scenarios::Store::Access::read_only);
     sweeps.insert(store.identity().sweep);
     builds.insert(store.identity().build);
     unfinished += store.unfinished().size();
+    if (!store.holds_whole_plan()) shards.push_back(folder);
     scenarios::ResultFilter filter;
     filter.metrics = metrics;
     for (scenarios::CellResult& result : store.results(filter)) results.push_back(std::move(result));
   }
   if (builds.size() > 1)
     throw core::InputError("baseline update: the folders hold results of different builds; a baseline is of one");
-  if (const std::string why = unfit(results, unfinished); !why.empty()) {
+  if (const std::string why = unfit(results, unfinished, shards); !why.empty()) {
     if (!arguments.allow_incomplete)
       throw core::InputError(
-          fmt::format("baseline update: {}; finish them (`tarmac sweep ... --resume` or "
-                      "--rerun-failed), or give --allow-incomplete to leave them out",
+          fmt::format("baseline update: {}; finish the sweep (`tarmac sweep ... --resume` or --rerun-failed, "
+                      "`tarmac merge`), or give --allow-incomplete to write the baseline without what is missing",
                       why));
-    console.warn(fmt::format("baseline update: {}; they are left out", why));
+    console.warn(fmt::format("baseline update: {}; the baseline is written without what is missing", why));
   }
   Baseline baseline = scenarios::make_baseline(results, metrics);
   baseline.sweeps.assign(sweeps.begin(), sweeps.end());

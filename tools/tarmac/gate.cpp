@@ -81,9 +81,7 @@ void print_json(const GateReport& report) {
   fmt::print("{}\n", rows.dump(1, ' ', false, Json::error_handler_t::replace));
 }
 
-}  // namespace
-
-int gate_command(const GateArguments& arguments, const CommonArguments& common) {
+GateReport judge(const GateArguments& arguments) {
   const scenarios::GateFile gate =
       scenarios::load_gate(scenarios::find_beside_scenarios(arguments.gate, "gates", scenario_folders()));
   check_metrics(gate);
@@ -93,8 +91,34 @@ int gate_command(const GateArguments& arguments, const CommonArguments& common) 
   if (!gate.sweep.empty() && gate.sweep != store.identity().sweep)
     throw core::InputError(fmt::format("{}: holds results of the sweep '{}', and {} is for '{}'", arguments.folder,
                                        store.identity().sweep, gate.file, gate.sweep));
-  const GateReport report = judge_gate({&gate, store.results({}), store.unfinished(), baseline ? &*baseline : nullptr,
-                                        store.identity().build, arguments.folder, today_utc()});
+  return judge_gate({&gate, store.results({}), store.unfinished(), baseline ? &*baseline : nullptr,
+                     store.identity().build, arguments.folder, today_utc(), store.holds_whole_plan()});
+}
+
+/// So that a page of tests shows why nothing was judged, and no report of an earlier run is taken for this one's.
+void write_error(const GateArguments& arguments, const std::string& message) {
+  const std::string gate = fs::path(arguments.gate).stem().string();
+  if (!arguments.junit.empty()) core::write_file(arguments.junit, reports::junit_error_xml(gate, message));
+  if (!arguments.markdown.empty()) core::write_file(arguments.markdown, reports::gate_error_markdown(gate, message));
+}
+
+GateReport judge_or_write_error(const GateArguments& arguments) {
+  try {
+    return judge(arguments);
+  } catch (const core::InputError& error) {
+    try {
+      write_error(arguments, error.what());
+    } catch (const core::InputError& no_report) {
+      throw core::InputError(fmt::format("{}\nand that could not be reported: {}", error.what(), no_report.what()));
+    }
+    throw;
+  }
+}
+
+}  // namespace
+
+int gate_command(const GateArguments& arguments, const CommonArguments& common) {
+  const GateReport report = judge_or_write_error(arguments);
   if (!arguments.junit.empty()) core::write_file(arguments.junit, reports::junit_xml(report));
   if (!arguments.markdown.empty()) core::write_file(arguments.markdown, reports::gate_markdown(report, arguments.link));
   common.json ? print_json(report) : print_report(report);

@@ -148,7 +148,7 @@ void add_gate_commands(CLI::App& app, Arguments& a) {
   update->add_option("-o,--out", a.baseline.out, "baseline file")->required();
   update->add_option("--gate", a.baseline.gate, "gate file, or its name: the metrics to keep (default: the main ones)");
   update->add_flag("--allow-incomplete", a.baseline.allow_incomplete,
-                   "leave out cells that failed or are not finished");
+                   "also of a shard; leave out cells that failed or are not finished");
 }
 
 void add_compare_command(CLI::App& app, Arguments& a) {

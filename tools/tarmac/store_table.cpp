@@ -156,16 +156,6 @@ Table group_table(const scenarios::Store& store, scenarios::ResultFilter filter,
   return table;
 }
 
-const scenarios::MetricValue* find_metric(const scenarios::CellResult& cell, const std::string& name) {
-  const scenarios::MetricValue* found = nullptr;
-  for (const scenarios::MetricValue& metric : cell.metrics) {
-    if (metric.metric != name) continue;
-    if (metric.estimate == "causal") return &metric;
-    if (!found) found = &metric;
-  }
-  return found;
-}
-
 /// Finished cells, then those that are not.
 std::vector<scenarios::CellResult> all_cells(const scenarios::Store& store, const scenarios::ResultFilter& filter) {
   std::vector<scenarios::CellResult> cells = store.results(filter);
@@ -181,7 +171,7 @@ std::vector<Field> cell_line(const scenarios::CellResult& cell, const std::vecto
   const double wall_s = cell.outcome.wall_s;
   line.push_back(open ? Field{"", "", {}} : Field{fmt::format("{:.1f}", wall_s), fmt::format("{}", wall_s), wall_s});
   for (const Column& column : columns) {
-    const scenarios::MetricValue* metric = find_metric(cell, column.metric);
+    const scenarios::MetricValue* metric = scenarios::find_value(cell, column.metric);
     line.push_back(metric && metric->value
                        ? Field{shown(*metric->value, column), fmt::format("{}", *metric->value), *metric->value}
                        : Field{open ? "" : "n/a", "", {}});
