@@ -1,9 +1,11 @@
 // `tarmac query` and `tarmac merge`.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/error.h"
 #include "core/files.h"
 #include "scenarios/store.h"
 #include "tools/tarmac/commands.h"
@@ -43,6 +45,30 @@ std::vector<std::vector<std::string>> texts(const scenarios::Store::Table& table
   return lines;
 }
 
+/// What can be asked for, a line for each view and one for the tables.
+std::string what_there_is(const scenarios::Store& store) {
+  std::string text;
+  for (const char* view : {"all_cells", "results", "deterministic"}) {
+    const auto columns = store.query(fmt::format("select * from {} limit 0", view)).columns;
+    text += fmt::format("\n  {}: {}", view, fmt::join(columns, ", "));
+  }
+  std::vector<std::string> tables;
+  for (const auto& row : store.query("select name from sqlite_schema where type = 'table' order by name").rows)
+    if (!row[0]->starts_with("sqlite_")) tables.push_back(*row[0]);
+  return text + fmt::format("\n  tables: {} (select sql from sqlite_schema: their columns)", fmt::join(tables, ", "));
+}
+
+/// As Store::query; who asked for what there is not is told what there is.
+scenarios::Store::Table ask(const scenarios::Store& store, const std::string& sql) {
+  try {
+    return store.query(sql, throw_if_interrupted);
+  } catch (const core::InputError& error) {
+    const std::string_view message = error.what();
+    if (message.find("no such column") == message.npos && message.find("no such table") == message.npos) throw;
+    throw core::InputError(fmt::format("{}; there are{}", message, what_there_is(store)));
+  }
+}
+
 /// Cells of a store: finished, and not.
 std::pair<std::size_t, std::size_t> cells_of(const std::filesystem::path& folder) {
   const auto store = scenarios::Store::open(folder, scenarios::Store::Access::read_only);
@@ -59,7 +85,7 @@ std::pair<std::size_t, std::size_t> cells_of(const std::filesystem::path& folder
 int query_command(const QueryArguments& arguments, const CommonArguments& common) {
   const Console console(common.quiet);
   const auto store = scenarios::Store::open(arguments.folder, scenarios::Store::Access::read_only);
-  const scenarios::Store::Table table = store.query(arguments.sql, throw_if_interrupted);
+  const scenarios::Store::Table table = ask(store, arguments.sql);
   if (common.json) {
     print_json(table);
   } else if (arguments.csv == "-") {
