@@ -40,6 +40,9 @@ struct StoreIdentity {
   std::string build;      ///< of the programs: cells of two builds do not mix
 };
 
+/// What StoreIdentity::plan_hash is: over the keys of all cells, in any order.
+std::string plan_hash_of(std::vector<std::string> keys);
+
 /// What a start found and did: said to the user.
 struct StoreStart {
   std::size_t done = 0, failed = 0, pending = 0;
@@ -83,6 +86,8 @@ class Store {
   Store& operator=(Store&&) noexcept;
 
   const StoreIdentity& identity() const;
+  /// False: a shard's store. Its cells are not all that the sweep has, so nothing can be said about the sweep by it.
+  bool holds_whole_plan() const;
   const std::filesystem::path& folder() const;
 
   /// Registers this process as a writer, takes back what dead ones had claimed and what was killed, and (with

@@ -1,8 +1,26 @@
 // What is asked of a store.
+#include <algorithm>
+
+#include "core/files.h"
 #include "scenarios/store_schema.h"
 #include "scenarios/store_state.h"
 
 namespace tarmac::scenarios {
+
+std::string plan_hash_of(std::vector<std::string> keys) {
+  std::sort(keys.begin(), keys.end());
+  std::string all;
+  for (const std::string& key : keys) all += key + "\n";
+  return core::hash_hex(all);
+}
+
+bool Store::holds_whole_plan() const {
+  const std::lock_guard guard(state_->mutex);
+  Statement& rows = state_->db->cached("select key from cells");
+  std::vector<std::string> keys;
+  while (rows.step()) keys.push_back(rows.text(0));
+  return plan_hash_of(std::move(keys)) == identity().plan_hash;
+}
 
 std::vector<std::string> Store::pending() const {
   const std::lock_guard guard(state_->mutex);

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "scenarios/store.h"
 #include "sim/simulate.h"
 #include "tools/tarmac/build_info.h"
 #include "tools/tarmac/child.h"
@@ -101,15 +101,6 @@ class Planner {
   std::map<std::string, std::size_t> worlds_;
 };
 
-std::string hash_of_keys(const std::vector<PlannedCell>& cells) {
-  std::vector<std::string> keys;
-  for (const PlannedCell& cell : cells) keys.push_back(cell.cell.key);
-  std::sort(keys.begin(), keys.end());
-  std::string all;
-  for (const std::string& key : keys) all += key + "\n";
-  return core::hash_hex(all);
-}
-
 /// Keeps the worlds of one shard, and their cells.
 void keep_shard(SweepPlan& plan, std::size_t shard, std::size_t shards) {
   if (shards == 1) return;
@@ -137,7 +128,9 @@ SweepPlan make_plan(const fs::path& sweep_file, const PlanSettings& settings) {
   plan.build = build_identity(settings.estimator_program);
   Planner planner(plan.file, settings);
   for (const scenarios::SweepCell& cell : plan.file.cells) planner.add(cell, plan);
-  plan.hash = hash_of_keys(plan.cells);
+  std::vector<std::string> keys;
+  for (const PlannedCell& cell : plan.cells) keys.push_back(cell.cell.key);
+  plan.hash = scenarios::plan_hash_of(std::move(keys));
   keep_shard(plan, settings.shard, settings.shards);
   return plan;
 }
