@@ -18,6 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr int kIncomplete = 3;
+
 Json value_json(const std::optional<std::string>& value, bool is_number) {
   if (!value) return nullptr;
   if (!is_number) return *value;
@@ -70,8 +72,7 @@ scenarios::Store::Table ask(const scenarios::Store& store, const std::string& sq
 }
 
 /// Cells of a store: finished, and not.
-std::pair<std::size_t, std::size_t> cells_of(const std::filesystem::path& folder) {
-  const auto store = scenarios::Store::open(folder, scenarios::Store::Access::read_only);
+std::pair<std::size_t, std::size_t> cells_of(const scenarios::Store& store) {
   std::size_t finished = 0, open = 0;
   for (const scenarios::CellGroup& group : store.groups({}, {"status"})) {
     for (const auto& [status, cells] : group.statuses)
@@ -105,19 +106,27 @@ int merge_command(const MergeArguments& arguments, const CommonArguments& common
   const std::size_t merged = scenarios::merge_stores(folders, arguments.out);
   Json json = {{"from", Json::array()}, {"to", arguments.out}};
   for (const std::string& folder : arguments.folders) {
-    const auto [finished, open] = cells_of(folder);
+    const auto [finished, open] = cells_of(scenarios::Store::open(folder, scenarios::Store::Access::read_only));
     json["from"].push_back({{"folder", folder}, {"finished", finished}, {"unfinished", open}});
     if (!common.json) console.say(fmt::format("{}: {} cells finished, {} not", folder, finished, open));
   }
-  const std::size_t open = cells_of(arguments.out).second;
+  const auto whole = scenarios::Store::open(arguments.out, scenarios::Store::Access::read_only);
+  const std::size_t open = cells_of(whole).second;
+  const bool complete = whole.holds_whole_plan();
   json["finished"] = merged;
   json["unfinished"] = open;
+  json["whole_sweep"] = complete;
   if (common.json) {
     fmt::print("{}\n", json.dump(1));
   } else {
     fmt::print("{}: {} cells finished, {} not\n", arguments.out, merged, open);
   }
-  return 0;
+  if (complete) return 0;
+  console.warn(
+      fmt::format("merge: {} holds {} cells; the sweep '{}' has more: a shard is missing. Merge all of its shards "
+                  "into a new folder",
+                  arguments.out, merged + open, whole.identity().sweep));
+  return kIncomplete;
 }
 
 }  // namespace tarmac::tools
