@@ -17,7 +17,6 @@ namespace tarmac::metrics {
 
 namespace {
 
-constexpr std::size_t kLeastPairs = 3;
 constexpr double kSignificance = 0.05;
 
 void judge(double p, double significance, PairedComparison& c) {
@@ -79,8 +78,11 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
   const std::vector<double> logs = log_ratios(a, b);
   PairedComparison c;
   c.pairs = logs.size();
-  c.a_lower = static_cast<std::size_t>(std::count_if(logs.begin(), logs.end(), [](double d) { return d < 0; }));
-  c.b_lower = static_cast<std::size_t>(std::count_if(logs.begin(), logs.end(), [](double d) { return d > 0; }));
+  const auto count = [&](auto&& is_so) {
+    return static_cast<std::size_t>(std::count_if(logs.begin(), logs.end(), is_so));
+  };
+  c.a_lower = count([](double d) { return d < -kLogRounding; });
+  c.b_lower = count([](double d) { return d > kLogRounding; });
   c.low = 0;
   c.high = std::numeric_limits<double>::infinity();
   if (logs.empty()) return c;
@@ -90,10 +92,12 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
   const double half_width = summary.error * student_quantile(c.pairs, 0.975);
   c.low = std::exp(summary.mean - half_width);
   c.high = std::exp(summary.mean + half_width);
-  if (summary.error > 0)
+  if (std::abs(summary.mean) <= kLogRounding)
+    c.p = 1;  // however well the seeds agree on it
+  else if (summary.error > 0)
     c.p = 2 * student_above(c.pairs, std::abs(summary.mean) / summary.error);
   else
-    c.p = summary.mean == 0 ? 1 : 0;  // the same ratio on every seed
+    c.p = 0;  // the same ratio on every seed
   c.p_adjusted = c.p;
   judge(c.p, significance, c);
   return c;
@@ -120,6 +124,11 @@ Better better_of(const MetricEntry& metric) {
   const std::string_view name = metric.name, family = metric.family;
   const bool score = family == "coverage" || name.starts_with("degeneracy_") || name == "real_time_factor";
   return score ? Better::higher : Better::neither;
+}
+
+bool describes_drive(const MetricEntry& metric) {
+  const std::string_view name = metric.name;
+  return better_of(metric) == Better::neither && (name == "path_length_m" || name.starts_with("oracle_"));
 }
 
 PairedComparison turned_around(const PairedComparison& comparison) {

@@ -1,11 +1,11 @@
 #include "metrics/compare_series.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "metrics/paired_logs.h"
 #include "metrics/statistics.h"
 
 namespace tarmac::metrics {
@@ -13,7 +13,6 @@ namespace tarmac::metrics {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kLeastPairs = 3;
 constexpr double kRounding = 1e-9;
 
 bool same_grid(const std::vector<double>& a, const std::vector<double>& b) {
@@ -107,12 +106,9 @@ struct Interval {
 
 Interval student(const std::vector<double>& values, double level) {
   if (values.size() < kLeastPairs) return {};
-  const double centre = mean(values), n = static_cast<double>(values.size());
-  double squares = 0;
-  for (const double v : values) squares += (v - centre) * (v - centre);
-  const boost::math::students_t distribution(n - 1);
-  const double half = std::sqrt(squares / (n - 1) / n) * boost::math::quantile(distribution, 1 - level / 2);
-  return {centre, centre - half, centre + half};
+  const LogSummary summary = summarise(values);
+  const double half = summary.error * student_quantile(summary.n, 1 - level / 2);
+  return {summary.mean, summary.mean - half, summary.mean + half};
 }
 
 double largest(const std::vector<double>& values) {

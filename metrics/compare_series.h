@@ -26,7 +26,7 @@ struct SeriesComparison {
   std::size_t pairs = 0;
   std::vector<double> x, a, b;  ///< medians over the seeds, on the first pair's grid; NaN where no seed has a value
   std::vector<double> block_x;  ///< middles of the blocks
-  /// Mean of B - A in each block, and its interval; NaN where fewer than 3 seeds have both.
+  /// Mean of B - A in each block, and its interval; NaN where fewer than kLeastPairs seeds have both.
   std::vector<double> difference, low, high;
   double block_length = 1;
   double level = 0.05;  ///< two-sided, of one block

@@ -12,9 +12,6 @@ namespace tarmac::metrics {
 
 namespace {
 
-/// Logarithms nearer than this differ by rounding alone.
-constexpr double kRounding = 1e-12;
-
 void check(const NonInferiorityRule& rule) {
   if (!(rule.alpha > 0 && rule.alpha < 1)) throw std::invalid_argument("non-inferiority: alpha lies between 0 and 1");
   if (!(rule.power > 0 && rule.power < 1)) throw std::invalid_argument("non-inferiority: power lies between 0 and 1");
@@ -41,15 +38,15 @@ std::vector<double> worsening_of(const std::vector<double>& now, const std::vect
 
 /// P(T(n - 1) > excess / error), also where all pairs agree.
 double p_of(std::size_t n, double excess, double error) {
-  if (error > kRounding) return student_above(n, excess / error);
-  return excess > kRounding ? 0 : 1;
+  if (error > kLogRounding) return student_above(n, excess / error);
+  return excess > kLogRounding ? 0 : 1;
 }
 
 NonInferiorityVerdict verdict_of(const NonInferiority& r, double upper, double threshold, double alpha) {
   if (r.worse > 0) return NonInferiorityVerdict::fail;
   if (r.better > 0 || r.pairs < 2) return NonInferiorityVerdict::inconclusive;
   if (r.p < alpha) return NonInferiorityVerdict::fail;
-  return upper <= threshold + kRounding ? NonInferiorityVerdict::pass : NonInferiorityVerdict::inconclusive;
+  return upper <= threshold + kLogRounding ? NonInferiorityVerdict::pass : NonInferiorityVerdict::inconclusive;
 }
 
 }  // namespace
@@ -93,7 +90,7 @@ NonInferiority test_non_inferiority(const std::vector<double>& now, const std::v
 
 double power_of_paired_test(std::size_t n, double delta, double sd, double alpha) {
   if (n < 2) return 0;
-  if (sd <= kRounding) return delta > kRounding ? 1 : 0;
+  if (sd <= kLogRounding) return delta > kLogRounding ? 1 : 0;
   const double noncentrality = delta * std::sqrt(static_cast<double>(n)) / sd;
   const double critical = student_quantile(n, 1 - alpha);
   // Far out Boost's series no longer converges; there the test cannot miss.
@@ -106,7 +103,7 @@ double minimum_detectable_change(std::size_t n, double sd, const NonInferiorityR
   check(rule);
   if (n < 2) return std::numeric_limits<double>::infinity();
   double low = 0, high = sd;
-  if (sd > kRounding) {
+  if (sd > kLogRounding) {
     while (power_of_paired_test(n, high, sd, rule.alpha) < rule.power) high *= 2;
     for (int k = 0; k < 60; ++k) {
       const double middle = 0.5 * (low + high);

@@ -25,14 +25,14 @@ std::vector<double> log_ratios(const std::vector<double>& a, const std::vector<d
   return logs;
 }
 
-LogSummary summarise(const std::vector<double>& logs) {
+LogSummary summarise(const std::vector<double>& values) {
   LogSummary s;
-  s.n = logs.size();
-  if (logs.empty()) return s;
-  s.mean = mean(logs);
+  s.n = values.size();
+  if (values.empty()) return s;
+  s.mean = mean(values);
   if (s.n < 2) return s;
   double squares = 0;
-  for (const double d : logs) squares += (d - s.mean) * (d - s.mean);
+  for (const double v : values) squares += (v - s.mean) * (v - s.mean);
   const double n = static_cast<double>(s.n);
   s.sd = std::sqrt(squares / (n - 1));
   s.error = s.sd / std::sqrt(n);

@@ -2,6 +2,7 @@
 /// share.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,10 +24,15 @@ struct Cell {
   std::vector<Override> parameters;  ///< varied and drawn ones, in the file's order: dotted path and YAML text
 };
 
+/// Every way in which a cell ends; docs/store.md says the same.
+inline constexpr std::array<const char*, 11> kOutcomeStatuses = {
+    "ok",        "not_initialised", "failed",        "crashed",    "timed_out", "out_of_memory",
+    "no_output", "bad_output",      "not_simulated", "not_scored", "killed"};
+
 /// What became of a cell. The second group differs from run to run.
 struct CellOutcome {
-  /// ok | not_initialised | failed | crashed | timed_out | out_of_memory | no_output | bad_output | not_simulated |
-  /// not_scored: an answer. killed: somebody else ended it (SIGKILL): no answer, and run again by --resume.
+  /// One of kOutcomeStatuses. All but `killed` are an answer; that is somebody else's SIGKILL, and run again by
+  /// --resume.
   std::string status = "ok";
   std::string message;
   std::string recording_hash;  ///< empty: there was no recording

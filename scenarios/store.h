@@ -141,7 +141,8 @@ class Store {
 
 /// Stores of shards, of the same sweep and build, as one in a new folder: the cells' files are linked or copied. A cell
 /// finished in several must have the same deterministic columns in all (else InputError). Cells finished nowhere are
-/// pending. Returns the number of finished cells.
+/// pending. A shard that was forgotten is no error: holds_whole_plan() of the result is false then. Returns the number
+/// of finished cells.
 std::size_t merge_stores(std::span<const std::filesystem::path> from, const std::filesystem::path& to);
 
 }  // namespace tarmac::scenarios

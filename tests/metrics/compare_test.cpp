@@ -58,6 +58,26 @@ TEST(ComparePaired, TwoSeedsSayNothingAndZeroesAreLeftOut) {
   EXPECT_THROW(compare_paired({1}, {1, 2}), std::invalid_argument);
 }
 
+/// A common factor of 1 + 1e-13 is what another order of a sum makes: its scatter over the seeds is smaller still.
+TEST(ComparePaired, RoundingIsNoDifferenceHoweverWellTheSeedsAgree) {
+  const std::vector<double> b = {1, 2.1, 3.3, 4.7, 5.9};
+  const auto times = [&](double factor) {
+    std::vector<double> a;
+    for (const double v : b) a.push_back(factor * v);
+    return a;
+  };
+  const PairedComparison rounding = compare_paired(times(1 + 1e-13), b);
+  EXPECT_EQ(rounding.difference, Difference::not_significant);
+  EXPECT_EQ(rounding.p, 1);
+  EXPECT_EQ(rounding.a_lower + rounding.b_lower, 0U);
+  EXPECT_EQ(compare_paired(times(1 + 1e-9), b).difference, Difference::higher);
+  std::vector<PairedComparison> list = {rounding, compare_paired(times(1.1), {1, 2, 3.4, 4.6, 6})};
+  const double alone = list[1].p;
+  judge_by_holm(list);
+  EXPECT_EQ(list[1].p_adjusted, alone) << "what cannot be claimed is not counted";
+  EXPECT_EQ(list[0].difference, Difference::not_significant);
+}
+
 TEST(ComparePaired, TurnedAroundIsWhatTheOtherOrderGives) {
   const std::vector<double> a = {0.9, 1.8, 2.73, 3.5, 5}, b = {1, 2, 3, 4, 5};  // a tie at last
   for (const std::size_t n : {std::size_t{5}, std::size_t{4}, std::size_t{2}}) {
@@ -185,6 +205,14 @@ TEST(BetterOf, KnowsErrorsScoresAndWhatIsNeither) {
   EXPECT_EQ(better_of(*find_metric("real_time_factor")), Better::higher);
   EXPECT_EQ(better_of(*find_metric("path_length_m")), Better::neither);
   EXPECT_EQ(better_of(*find_metric("oracle_degenerate_percent")), Better::neither);
+}
+
+TEST(DescribesDrive, IsTheTruePathAndTheOracleAlone) {
+  std::vector<std::string> names;
+  for (const MetricEntry& metric : metrics())
+    if (describes_drive(metric)) names.emplace_back(metric.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"path_length_m", "oracle_degenerate_percent",
+                                             "oracle_degenerate_12dof_percent"}));
 }
 
 /// p of (a, b) is about 0.04: enough alone, not as the smallest of three.

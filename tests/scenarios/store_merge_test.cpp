@@ -95,6 +95,21 @@ TEST(StoreMerge, ShardsThatEachPlannedTheWholeSweepAndOverlap) {
   for (const std::size_t i : {9, 10, 11}) run(merged, i);
 }
 
+TEST(StoreMerge, AForgottenShardLeavesLessThanThePlan) {
+  const TemporaryFolder folder;
+  std::vector<std::string> keys;
+  for (const Cell& one : cells(kCells)) keys.push_back(one.key);
+  StoreIdentity identity = kIdentity;
+  identity.plan_hash = plan_hash_of(keys);
+  std::vector<fs::path> shards;
+  for (const std::size_t i : {0U, 1U, 2U})
+    shards.push_back(sweep(folder / std::to_string(i), planned(every(3, i)), every(3, i), identity));
+  EXPECT_EQ(merge({shards[0], shards[2]}, folder / "two"), 8u);
+  EXPECT_FALSE(Store::open(folder / "two", Store::Access::read_only).holds_whole_plan());
+  EXPECT_EQ(merge({shards[2], shards[0], shards[1]}, folder / "three"), kCells);
+  EXPECT_TRUE(Store::open(folder / "three", Store::Access::read_only).holds_whole_plan());
+}
+
 TEST(StoreMerge, WhatSomebodyKilledIsNotFinished) {
   const TemporaryFolder folder;
   const fs::path a = sweep(folder / "a", cells(4), {0});

@@ -381,5 +381,11 @@ TEST(StoreQuery, TheReportsQuestionsAreAnsweredThroughIndices) {
               HasSubstr("outcomes_by_wall (wall_s>?)"));
 }
 
+TEST(StoreDocs, NameEveryWayInWhichACellEnds) {
+  std::string names;
+  for (const char* status : kOutcomeStatuses) names += fmt::format("{}`{}`", names.empty() ? "" : ", ", status);
+  EXPECT_THAT(core::read_file(TARMAC_DOCS "/store.md"), HasSubstr("| how it ended: " + names + " |"));
+}
+
 }  // namespace
 }  // namespace tarmac::scenarios

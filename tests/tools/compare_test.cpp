@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -35,6 +36,7 @@ using testing::SizeIs;
 /// Values that differ from seed to seed, and what multiplies them.
 struct Made {
   double deskew = 1, ate = 1, time = 1;
+  double path = 1;  ///< of the true path that is scored
   double late = 0;  ///< added to the deskew error from 2 s on [m]
   std::string status = "ok";
 };
@@ -60,6 +62,7 @@ metrics::Evaluation evaluation(const std::string& scenario, std::uint64_t seed, 
   put("deskew_error_rms_m", 0.02 * hard * made.deskew, "m");
   put("ate_se3_rmse_m", 0.3 * hard * made.ate, "m");
   put("coverage_percent", 100, "%");
+  put("path_length_m", 60 * hard * made.path, "m");
   put("time_lag_ms", seed % 2 ? 1.5 : -1.5, "ms");
   put("sweep_time_p50_ms", 20 * hard * made.time, "ms");
   metrics::Series deskew{"deskew_error_vs_time", "time [s]", "deskew error [m]", {}, {}, {}, {}};
@@ -257,6 +260,18 @@ TEST(Compare, MetricsAndCasesCanBeChosen) {
   EXPECT_THAT(input.drives, IsEmpty()) << "not asked for";
 }
 
+/// The true path between the first and the last scored pose is longer by the same share on every seed.
+TEST(Compare, WhatDescribesTheDriveIsComparedOnlyWhenNamed) {
+  const TemporaryFolder folder;
+  make_runs(folder / "a", {{"kiss-icp", {}}});
+  make_runs(folder / "b", {{"kiss-icp", {.path = 1.0001}}});
+  EXPECT_THAT(reports::summary_of(compare(folder / "a", folder / "b")).sentence, HasSubstr("are identical"));
+  CompareSettings settings{folder / "a", folder / "b", "", "", {"path_length_m"}, "", false};
+  const CompareInput named = compare_folders(settings, {});
+  ASSERT_THAT(named.rows, SizeIs(1));
+  EXPECT_EQ(named.rows[0].verdict, CompareVerdict::different);
+}
+
 TEST(Compare, FewerThanThreeSeedsClaimNothing) {
   const TemporaryFolder folder;
   make_runs(folder / "a", {{"kiss-icp", {}}}, 2);
@@ -361,6 +376,30 @@ TEST(CompareStores, AStoreWithoutItsFilesIsComparedByItsRows) {
   EXPECT_EQ(row(input, "ate_se3_rmse_m", "ct-icp").verdict, CompareVerdict::worse);
   EXPECT_THAT(input.drives, IsEmpty());
   EXPECT_THAT(lines(input), testing::Contains(HasSubstr("no series: kiss-icp on case brake motion.peak=3")));
+}
+
+TEST(CompareStores, OnlyTheMetricsThatAreComparedAreLoaded) {
+  const TemporaryFolder folder;
+  make_store(folder / "a", 1);
+  const auto loaded = [&](const std::vector<std::string>& metrics) {
+    std::set<std::string> names;
+    for (const ComparedRun& run :
+         read_compared_folder(folder / "a", {"", "", metrics}, [](double, const auto&) {}).runs)
+      for (const metrics::Row& r : run.rows) names.insert(r.metric);
+    return names;
+  };
+  EXPECT_THAT(loaded({}), testing::UnorderedElementsAre("deskew_error_rms_m", "ate_se3_rmse_m", "coverage_percent",
+                                                        "time_lag_ms", "sweep_time_p50_ms"));
+  EXPECT_THAT(loaded({"path_length_m"}), testing::ElementsAre("path_length_m"));
+  EXPECT_THAT(loaded({"drift_50m_along_rms_m"}), IsEmpty()) << "it has none, which is not all";
+}
+
+TEST(CompareStores, WhatHasNotRunYetIsSaidToBeSo) {
+  const TemporaryFolder folder;
+  make_store(folder / "a", 1);
+  make_store(folder / "b", 1, 1);  // of kiss-icp
+  EXPECT_THAT(message_of<core::InputError>([&] { (void)compare(folder / "a", folder / "b", "ct-icp", "ct-icp"); }),
+              HasSubstr("B has no finished run"));
 }
 
 TEST(CompareStores, AStoreStandsBesideTwoEstimatorsAndOneCase) {

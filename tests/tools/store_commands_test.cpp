@@ -74,11 +74,16 @@ class StoreCommands : public testing::Test {
     delete folder_;
     folder_ = nullptr;
   }
-  /// All cells are planned; every step-th from `first` on and below `end` is finished.
-  static void make(const std::string& name, std::size_t first, std::size_t step, std::size_t end) {
+  /// Every step-th cell from `first` on and below `end` is finished. All are planned, or, by a shard, those only.
+  static void make(const std::string& name, std::size_t first, std::size_t step, std::size_t end, bool shard = false) {
     std::vector<scenarios::Cell> cells;
-    for (std::size_t i = 0; i < kCells; ++i) cells.push_back(cell(i));
-    auto store = scenarios::Store::create(path(name), {"brakes", "0", "test"}, "name: brakes\n", cells);
+    std::vector<std::string> keys;
+    for (std::size_t i = 0; i < kCells; ++i) {
+      keys.push_back(cell(i).key);
+      if (!shard || i % step == first) cells.push_back(cell(i));
+    }
+    const std::string plan = scenarios::plan_hash_of(keys);
+    auto store = scenarios::Store::create(path(name), {"brakes", plan, "test"}, "name: brakes\n", cells);
     store.start(false);
     for (std::size_t i = first; i < end; i += step) {
       const scenarios::CellResult finished = result(i);
@@ -141,9 +146,12 @@ TEST_F(StoreCommands, TableFiltersSortsAndShowsCells) {
   EXPECT_THAT(lines[1], AllOf(StartsWith(cell(20).key), HasSubstr("1.25"), HasSubstr("n/a")));
   EXPECT_THAT(lines[4], AllOf(StartsWith(cell(14).key), HasSubstr("0.5")));
   EXPECT_THAT(lines[5], AllOf(StartsWith(cell(22).key), HasSubstr("pending"), Not(HasSubstr("n/a"))));
-  const Ended none = tarmac({"table", "whole", "--status", "timed_out"});
-  EXPECT_EQ(none.code, 0);
-  EXPECT_THAT(none.out, HasSubstr("no cell matches"));
+  for (const char* status : scenarios::kOutcomeStatuses) {
+    const Ended ended = tarmac({"table", "whole", "--status", status});
+    EXPECT_EQ(ended.code, 0) << ended.out;
+    const bool there = std::string_view(status) == "ok" || std::string_view(status) == "crashed";
+    EXPECT_EQ(ended.out.find("no cell matches") == std::string::npos, there) << status;
+  }
 }
 
 TEST_F(StoreCommands, UnknownNamesAreErrorsWithAGuess) {
@@ -213,6 +221,18 @@ TEST_F(StoreCommands, QueryReadsAndRefusesToWrite) {
   }
 }
 
+TEST_F(StoreCommands, AQueryOfWhatThereIsNotIsToldWhatThereIs) {
+  for (const char* sql : {"select nonsense from results", "select value from metrics"}) {
+    const Ended ended = tarmac({"query", "whole", sql});
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_THAT(ended.out,
+                AllOf(StartsWith("error: query: no such "), HasSubstr("\n  all_cells: cell, scenario, case, case_name"),
+                      HasSubstr("\n  results: cell,"), HasSubstr(" metric, value, unit,"),
+                      HasSubstr("\n  tables: cells, claims, events")));
+  }
+  EXPECT_THAT(tarmac({"query", "whole", "delete from outcomes"}).out, Not(HasSubstr("all_cells")));
+}
+
 TEST_F(StoreCommands, MergedShardsDumpAsTheWholeWould) {
   const Ended ended = tarmac({"merge", "a", "b", "-o", "merged"});
   EXPECT_EQ(ended.code, 0) << ended.out;
@@ -224,6 +244,17 @@ TEST_F(StoreCommands, MergedShardsDumpAsTheWholeWould) {
   EXPECT_EQ(merged.out, all.out);
   EXPECT_TRUE(fs::exists(path("merged") / "cells" / cell(5).key / "log.txt"));
   EXPECT_EQ(tarmac({"merge", "a", "b", "-o", "merged"}).code, 2) << "there is a store already";
+}
+
+TEST_F(StoreCommands, MergeNoticesAForgottenShard) {
+  for (const std::size_t i : {0U, 1U, 2U}) make("shard-" + std::to_string(i), i, 3, kCells, true);
+  const Ended two = tarmac({"merge", "shard-0", "shard-2", "-o", "two"});
+  EXPECT_EQ(two.code, 3);
+  EXPECT_THAT(two.out, AllOf(HasSubstr("two: 16 cells finished, 0 not"),
+                             HasSubstr("two holds 16 cells; the sweep 'brakes' has more: a shard is missing")));
+  const Ended three = tarmac({"merge", "shard-0", "shard-1", "shard-2", "-o", "three", "--json"});
+  EXPECT_EQ(three.code, 0);
+  EXPECT_THAT(three.out, AllOf(HasSubstr("\"whole_sweep\": true"), Not(HasSubstr("missing"))));
 }
 
 }  // namespace

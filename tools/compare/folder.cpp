@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "metrics/compare.h"
 #include "scenarios/store.h"
 #include "tools/tarmac/layout.h"
 #include "tools/tarmac/provenance.h"
@@ -39,10 +40,7 @@ void keep_wanted(const FolderFilter& filter, ComparedRun run, ComparedFolder& in
   remember(run.estimator, into.estimators);
   if (!filter.case_name.empty() && run.case_name != filter.case_name) return;
   if (!filter.estimator.empty() && run.estimator != filter.estimator) return;
-  if (!filter.metrics.empty())
-    std::erase_if(run.rows, [&](const metrics::Row& row) {
-      return std::find(filter.metrics.begin(), filter.metrics.end(), row.metric) == filter.metrics.end();
-    });
+  std::erase_if(run.rows, [&](const metrics::Row& row) { return !filter.wants(row.metric); });
   into.runs.push_back(std::move(run));
 }
 
@@ -98,24 +96,19 @@ ComparedRun run_of(scenarios::CellResult& result, const fs::path& store) {
   return run;
 }
 
-/// The names of all finished cells, without their metrics.
-void list_names(const scenarios::Store& store, ComparedFolder& into) {
-  for (const auto& row : store.query("select distinct case_name from results order by 1").rows)
-    into.cases.push_back(row.at(0).value_or(""));
-  for (const auto& row : store.query("select distinct estimator from results order by 1").rows)
-    into.estimators.push_back(row.at(0).value_or(""));
-}
-
 ComparedFolder read_store(const fs::path& path, const FolderFilter& filter, const core::Progress& progress) {
   const scenarios::Store store = scenarios::Store::open(path, scenarios::Store::Access::read_only);
   ComparedFolder out;
   out.path = path;
   out.build = store.identity().build;
-  list_names(store, out);
+  out.cases = store.distinct("case");
+  out.estimators = store.distinct("estimator");
   scenarios::ResultFilter wanted;
   if (!filter.case_name.empty()) wanted.cases = {filter.case_name};
   if (!filter.estimator.empty()) wanted.estimators = {filter.estimator};
-  wanted.metrics = filter.metrics;
+  for (const std::string& metric : store.distinct("metric"))
+    if (filter.wants(metric)) wanted.metrics.push_back(metric);
+  if (wanted.metrics.empty()) wanted.metrics = {"-"};  // none would be all
   progress(0.1, "reading the store");
   std::vector<scenarios::CellResult> results = store.results(wanted);
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -135,6 +128,12 @@ ComparedFolder read_store(const fs::path& path, const FolderFilter& filter, cons
 }
 
 }  // namespace
+
+bool FolderFilter::wants(const std::string& metric) const {
+  if (!metrics.empty()) return std::find(metrics.begin(), metrics.end(), metric) != metrics.end();
+  const metrics::MetricEntry* entry = metrics::find_metric(metric);
+  return !entry || !metrics::describes_drive(*entry);
+}
 
 ComparedFolder read_compared_folder(const fs::path& path, const FolderFilter& filter, const core::Progress& progress) {
   if (!fs::is_directory(path)) throw core::InputError(fmt::format("{}: there is no such folder", path.string()));

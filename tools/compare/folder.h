@@ -27,7 +27,7 @@ struct ComparedFolder {
   std::filesystem::path path;
   std::string build;                           ///< "0.1.0 697e83c234a6"; several are separated by commas
   std::string provenance_json;                 ///< of the first run that has one
-  std::vector<std::string> cases, estimators;  ///< all that are there, whatever was asked for
+  std::vector<std::string> cases, estimators;  ///< all that are there or planned, whatever was asked for
   std::vector<ComparedRun> runs;
   std::size_t unfinished = 0;  ///< cells of a store that have no outcome yet
 };
@@ -36,6 +36,9 @@ struct ComparedFolder {
 struct FolderFilter {
   std::string case_name, estimator;
   std::vector<std::string> metrics;
+
+  /// Without names all that tell of the method; those that describe the drive only by name.
+  bool wants(const std::string& metric) const;
 };
 
 /// Throws InputError when there is nothing to read: neither store nor run, or an estimator without evaluation.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "metrics/paired_logs.h"
+
 namespace tarmac::tools {
 namespace {
 
@@ -22,7 +24,7 @@ void print_json(const reports::CompareInput& input) {
   Json rows = Json::array();
   for (const CompareRow& row : input.rows) {
     const auto& c = row.comparison;
-    const bool known = c.pairs >= 3;
+    const bool known = c.pairs >= metrics::kLeastPairs;
     rows.push_back({{"scenario", row.case_name},
                     {"estimator_a", row.estimator_a},
                     {"estimator_b", row.estimator_b},

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "metrics/paired_logs.h"
 #include "metrics/registry.h"
 #include "metrics/statistics.h"
 
@@ -16,8 +17,6 @@ namespace {
 using metrics::Better;
 using reports::CompareRow;
 using reports::CompareVerdict;
-
-constexpr std::size_t kLeastPairs = 3;
 
 /// Values of one metric by estimate ("causal", "final"), a list as long as the seeds.
 using Values = std::map<std::string, std::vector<std::optional<double>>>;
@@ -132,7 +131,7 @@ CompareVerdict verdict_of(const CompareRow& row) {
   if (row.same == row.seeds) return CompareVerdict::identical;
   switch (row.comparison.difference) {
     case metrics::Difference::too_few:
-      return row.seeds >= kLeastPairs ? CompareVerdict::no_ratio : CompareVerdict::too_few;
+      return row.seeds >= metrics::kLeastPairs ? CompareVerdict::no_ratio : CompareVerdict::too_few;
     case metrics::Difference::not_significant:
       return CompareVerdict::no_difference;
     case metrics::Difference::lower:

@@ -1,4 +1,5 @@
-/// The program's commands. Each returns an exit code (0 success, 3 some runs failed) and throws InputError (2).
+/// The program's commands. Each returns an exit code (0 success, 3 some runs failed or are missing) and throws
+/// InputError (2).
 #pragma once
 
 #include <cstdint>

@@ -72,9 +72,9 @@ scenarios::ResultFilter store_filter(const scenarios::Store& store, const TableA
   check("--estimator", filter.estimators, store.distinct("estimator"));
   check("--metrics", filter.metrics, store.distinct("metric"), registered_metrics());
   // That no cell ended so is an answer.
-  check("--status", filter.statuses, store.distinct("status"),
-        {"ok", "not_initialised", "failed", "crashed", "timed_out", "out_of_memory", "no_output", "bad_output",
-         "not_simulated", "killed", "pending", "running"});
+  Words statuses(scenarios::kOutcomeStatuses.begin(), scenarios::kOutcomeStatuses.end());
+  statuses.insert(statuses.end(), {"pending", "running"});
+  check("--status", filter.statuses, store.distinct("status"), statuses);
   if (!arguments.seeds.empty()) filter.seeds = scenarios::parse_seeds(arguments.seeds);
   for (const std::string& text : arguments.where) {
     const std::size_t equals = text.find('=');
