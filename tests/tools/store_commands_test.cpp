@@ -147,10 +147,10 @@ TEST_F(StoreCommands, TableFiltersSortsAndShowsCells) {
   EXPECT_THAT(lines[4], AllOf(StartsWith(cell(14).key), HasSubstr("0.5")));
   EXPECT_THAT(lines[5], AllOf(StartsWith(cell(22).key), HasSubstr("pending"), Not(HasSubstr("n/a"))));
   for (const char* status : scenarios::kOutcomeStatuses) {
-    const Ended ended = tarmac({"table", "whole", "--status", status});
-    EXPECT_EQ(ended.code, 0) << ended.out;
+    const Ended by_status = tarmac({"table", "whole", "--status", status});
+    EXPECT_EQ(by_status.code, 0) << by_status.out;
     const bool there = std::string_view(status) == "ok" || std::string_view(status) == "crashed";
-    EXPECT_EQ(ended.out.find("no cell matches") == std::string::npos, there) << status;
+    EXPECT_EQ(by_status.out.find("no cell matches") == std::string::npos, there) << status;
   }
 }
 
