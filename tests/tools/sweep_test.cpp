@@ -348,8 +348,8 @@ TEST_F(Sweep, AFullDiskStopsItAndAfterRoomIsMadeItGoesOn) {
   // A small file system of our own, in a name space of mounts: needs no rights where the kernel lends them.
   const std::string mount = path("small-disk").string();
   fs::create_directories(mount);
-  std::vector<int> ballasts_kb = {3500};  // of 9000; it decides what is running when the disk is full
-  if (kill_rounds() > 2) ballasts_kb = {2500, 3000, 3500, 4000, 4500, 5500, 7000, 8000, 8500, 8900};
+  std::vector<int> ballasts_kb = {5000};  // of 9000; it decides what is running when the disk is full
+  if (kill_rounds() > 2) ballasts_kb = {4000, 4500, 5000, 5500, 6000, 7000, 8000, 8500, 8900};
   for (const int ballast_kb : ballasts_kb) {
     const std::string name = "full-" + std::to_string(ballast_kb);
     const std::vector<std::string> words = {"sweep",  "small.yaml", "-o",      mount + "/out",
