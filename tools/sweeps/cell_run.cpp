@@ -9,7 +9,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/diagnostics.h"
 #include "core/files.h"
 #include "metrics/evaluation.h"
 #include "metrics/registry.h"

@@ -6,7 +6,7 @@ namespace tarmac::tools {
 namespace {
 
 constexpr double kSimulate_s_per_ray = 0.55e-6;
-constexpr double kScore_s_per_ray = 1.2e-6;  // of sensors whose channels fire one after the other; others take half
+constexpr double kScore_s_per_ray = 1.2e-6;  // of sensors whose channels fire one after the other; less of others
 constexpr double kStart_s = 0.3;             // processes, reading and writing
 constexpr double kRecordingBytesPerRay = 7.9;
 constexpr double kCellFiles_mb = 0.5;

@@ -193,7 +193,7 @@ class Execution {
     double work_s = 0;
     try {
       // A recording is the drive's and the simulator's: another build, or --fast, may make other bytes.
-      const std::string key = core::hash_hex(fmt::format("{}\n{}\n{}\n", world.key, simulator_build_, settings_.fast));
+      const std::string key = core::hash_hex(fmt::format("{}\n{}\n", world.key, simulator_build_));
       CachedRecording recording = cache_.obtain(key, [&](const fs::path& folder) {
         const SimulatedDrive drive = simulate_drive(world, folder, settings_, [](double, const std::string&) {});
         work_s = drive.work_s;

@@ -1,6 +1,5 @@
 // `tarmac sweep`: many cells into a store.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <charconv>
 #include <set>
