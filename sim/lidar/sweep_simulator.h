@@ -1,4 +1,4 @@
-/// One spinning LiDAR on a moving body: firing times to rays to echoes to points.
+/// One scanning LiDAR on a moving body: firing times to rays to echoes to points.
 #pragma once
 
 #include <cstdint>
@@ -46,6 +46,12 @@ struct Workspace {
   Echoes echoes;
   std::vector<Cycle> cycles;
   std::vector<float> x_m, y_m, z_m;  ///< points of all firings, in the sensor's frame
+  std::vector<double> beam_x, beam_y, beam_z;  ///< of all firings, where beams differ from cycle to cycle
+};
+
+/// A cycle's beams as arrays: unit vectors in the head's frame, seconds into the cycle.
+struct Beams {
+  const double *x, *y, *z, *offset_s;
 };
 
 /// The rays of a whole sweep and the tiles they are traced in.
@@ -84,6 +90,8 @@ class SweepSimulator {
   SweepMotion motion_of(const SweepSpan& span) const;
   void aim(const SweepSpan& span, const SweepMotion& motion, std::int64_t first, std::size_t cycles,
            const Eigen::Vector3d& base, Workspace& w) const;
+  Beams beams_at(const Workspace& w, std::size_t i) const;  // of the cycle whose first firing is i
+  void point_beams(Workspace& w) const;
   void measure(const SweepSpan& span, std::int64_t first, Workspace& w) const;
   std::size_t report(Workspace& w, std::size_t points, SimulatedSweep& out) const;
 
