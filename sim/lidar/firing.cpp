@@ -89,11 +89,10 @@ void FiringTable::add_firing(const Profile& p, std::size_t c, std::size_t block,
   const double ahead = value_or_0(p.origin_forward_m, c), right = -value_or_0(p.origin_left_m, c);
   // Where channels fire one after the other the head's circle turns on between them: it is part of each offset then.
   const double radius = channel_origins_ ? radius_m_ : 0;
-  beams_.push_back({std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                    std::sin(elevation),
-                    ahead * std::cos(azimuth) - right * std::sin(azimuth) + radius * std::cos(spin),
-                    ahead * std::sin(azimuth) + right * std::cos(azimuth) + radius * std::sin(spin),
-                    value_or_0(p.origin_up_m, c)});
+  beams_.push_back(
+      {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+       ahead * std::cos(azimuth) - right * std::sin(azimuth) + radius * std::cos(spin),
+       ahead * std::sin(azimuth) + right * std::cos(azimuth) + radius * std::sin(spin), value_or_0(p.origin_up_m, c)});
   offset_ns_.push_back(static_cast<std::int32_t>(offset_ns));
   elevation_rad_.push_back(elevation);
   azimuth_rad_.push_back(azimuth);

@@ -16,8 +16,8 @@
 
 namespace tarmac::sim::lidar {
 
-/// One firing cycle: a column of an encoder-driven sensor; of a clock-driven one a sequence, or all its states once; a few
-/// pulses of a scanner with prisms, whose `azimuth` is always 0.
+/// One firing cycle: a column of an encoder-driven sensor; of a clock-driven one a sequence, or all its states once; a
+/// few pulses of a scanner with prisms, whose `azimuth` is always 0.
 struct Cycle {
   core::Time t;                     ///< of its beginning
   double cos_azimuth, sin_azimuth;  ///< of the head at t, clockwise from sensor +x
@@ -42,9 +42,10 @@ struct SweepSpan {
 /// Channel c fires at t + firing_us[c], in the direction azimuth + azimuth_offset_cw_deg[c] + 360 rate firing_us[c].
 /// Times are rounded to a nanosecond.
 ///
-/// A sensor whose channels fire at other times from cycle to cycle (Profile::states), or whose beams differ from pulse to
-/// pulse, has several `blocks` in a cycle here: a cycle then takes that many cycle_us, and holds each channel as often as
-/// it fires in that time. What is called a channel of this table is one of those firings; channel_of() tells whose.
+/// A sensor whose channels fire at other times from cycle to cycle (Profile::states), or whose beams differ from pulse
+/// to pulse, has several `blocks` in a cycle here: a cycle then takes that many cycle_us, and holds each channel as
+/// often as it fires in that time. What is called a channel of this table is one of those firings; channel_of() tells
+/// whose.
 ///
 /// A head that turns unevenly (`jitter`) passes the fixed angles of an encoder-driven sensor at other times,
 /// t + lead(t), and has other angles at the fixed times of a clock-driven one, 360 rate (t + lead(t)); inside a cycle
@@ -75,7 +76,9 @@ class FiringTable {
   bool staggered() const { return staggered_; }  ///< channels fire at different instants
   /// Unit vector of the beam in the sensor frame.
   Eigen::Vector3d direction(const Cycle& cycle, std::size_t channel) const {
-    if (prism_) return prism_->direction(static_cast<double>((cycle.t - start_).time_since_epoch().count() + offset_ns_[channel]));
+    if (prism_)
+      return prism_->direction(
+          static_cast<double>((cycle.t - start_).time_since_epoch().count() + offset_ns_[channel]));
     const Beam& b = beams_[channel];
     return turned(cycle, b.forward, b.right, b.up);
   }

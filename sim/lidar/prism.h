@@ -11,9 +11,9 @@ namespace tarmac::sim::lidar {
 /// Where a beam along sensor +x goes behind two turning wedges: Snell's law in vector form at each of the four faces,
 ///   d' = r d + (r c - sqrt(1 - r^2 (1 - c^2))) n,   r = n_before / n_after,  c = -n.d,  n against the light,
 /// not the first-order sum of deviations (n - 1) wedge, which is 0.4 degrees short at the rim of the Mid-40's pattern.
-/// Each wedge has its slanted face towards the light and its square face behind it: of the four ways to mount two wedges
-/// this one gives the Mid-40's circle of 38.4 degrees, and leaves no hole in its middle. The wedges are thin: all beams
-/// leave from the sensor frame's origin.
+/// Each wedge has its slanted face towards the light and its square face behind it: of the four ways to mount two
+/// wedges this one gives the Mid-40's circle of 38.4 degrees, and leaves no hole in its middle. The wedges are thin:
+/// all beams leave from the sensor frame's origin.
 class Prism {
  public:
   /// Throws InputError when some position of the wedges lets no light out (total reflection) or turns it backwards.

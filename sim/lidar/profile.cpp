@@ -153,8 +153,9 @@ void check_prism_timing(const ConfigNode& node, const Profile& p) {
   pair("prism_hz", p.prism_hz);
   pair("prism_start_deg", p.prism_start_deg);
   if (p.channels() != 1 || p.elevation_deg[0] != 0 || p.azimuth_offset_cw_deg[0] != 0 || p.firing_us[0] != 0)
-    node.fail_at("elevation_deg", "a sensor with timing: prism has one channel, along the wedges' axis: [0], with "
-                                  "azimuth_offset_cw_deg: [0] and firing_us: [0]");
+    node.fail_at("elevation_deg",
+                 "a sensor with timing: prism has one channel, along the wedges' axis: [0], with "
+                 "azimuth_offset_cw_deg: [0] and firing_us: [0]");
   try {
     Prism check(p);
   } catch (const InputError& error) {
@@ -252,8 +253,7 @@ void Profile::visit(core::OptionVisitor& v) {
            "columns at fixed angles, firing cycles at fixed times, or pulses through two turning wedges");
   v("modes", modes, "COLUMNSxRATE (timing: encoder)");
   v("default_mode", default_mode, "one of modes");
-  v("default_rate_hz", default_rate_hz, "revolutions (timing: clock) or frames (timing: prism) a second",
-    {.above = 0});
+  v("default_rate_hz", default_rate_hz, "revolutions (timing: clock) or frames (timing: prism) a second", {.above = 0});
   v("min_rate_hz", min_rate_hz, "slowest spin (timing: clock) or frame rate (timing: prism)", {.above = 0});
   v("max_rate_hz", max_rate_hz, "fastest spin (timing: clock) or frame rate (timing: prism)", {.above = 0});
   v("cycle_us", cycle_us, "from one firing cycle (timing: clock) or pulse (timing: prism) to the next",
@@ -326,7 +326,8 @@ Mode mode_of(const Profile& p, int columns, double rate_hz) {
       throw InputError(
           fmt::format("{} fires by the clock: its columns follow from sweep_rate_hz; leave columns out", p.name));
     if (rate < p.min_rate_hz || rate > p.max_rate_hz)
-      throw InputError(fmt::format("{} makes sweeps at {} to {} Hz, not at {}", p.name, p.min_rate_hz, p.max_rate_hz, rate));
+      throw InputError(
+          fmt::format("{} makes sweeps at {} to {} Hz, not at {}", p.name, p.min_rate_hz, p.max_rate_hz, rate));
     return {0, rate};
   }
   Mode wanted = parse_mode(p.default_mode);

@@ -23,8 +23,8 @@ struct Profile {
   std::string name;
   std::string summary;
   std::string source;
-  /// "encoder": columns at fixed angles. "clock": a firing cycle every cycle_us. "prism": a pulse every cycle_us through
-  /// two turning wedges (prism.h); a sweep is a frame of fixed length, which repeats nothing.
+  /// "encoder": columns at fixed angles. "clock": a firing cycle every cycle_us. "prism": a pulse every cycle_us
+  /// through two turning wedges (prism.h); a sweep is a frame of fixed length, which repeats nothing.
   std::string timing;
   std::vector<std::string> modes;  ///< of encoder timing: COLUMNSxRATE
   std::string default_mode;

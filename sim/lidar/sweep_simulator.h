@@ -45,7 +45,7 @@ struct Workspace {
   raycast::Hits hits;
   Echoes echoes;
   std::vector<Cycle> cycles;
-  std::vector<float> x_m, y_m, z_m;  ///< points of all firings, in the sensor's frame
+  std::vector<float> x_m, y_m, z_m;            ///< points of all firings, in the sensor's frame
   std::vector<double> beam_x, beam_y, beam_z;  ///< of all firings, where beams differ from cycle to cycle
 };
 

@@ -77,8 +77,8 @@ class RangeNoise {
   std::vector<float> sigma_m_;
 };
 
-/// A constant range error of each channel, drawn once a sensor. `channels`: whose firings a cycle holds, in their order;
-/// empty: every channel's of the profile, one after the other.
+/// A constant range error of each channel, drawn once a sensor. `channels`: whose firings a cycle holds, in their
+/// order; empty: every channel's of the profile, one after the other.
 class ChannelBias {
  public:
   ChannelBias(const Profile& profile, double scale, std::uint64_t seed, const char* stream,
