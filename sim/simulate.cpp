@@ -136,7 +136,8 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
       std::make_shared<const raycast::Tracer>(input.scene, raycast::TracerSettings{threads, settings.fast});
   const lidar::SweepSimulator simulator(options.lidar.profile, firing_table(options, input.seed),
                                         {.sensor = 0, .T_body_lidar = setup.truth.lidars[0].T_body_lidar},
-                                        options.lidar.noise, input.seed, tracer, input.scene, input.motion);
+                                        options.lidar.noise, input.seed, tracer, input.scene, input.motion,
+                                        {.point_truth = input.point_truth});
   const std::int64_t count = sweeps_within(simulator.firing(), input);
 
   const faults::LidarFaults faults = lidar_faults(simulator.firing(), count, input.seed, setup);

@@ -20,10 +20,11 @@ struct SimulationInput {
   core::Duration duration{0};
   std::shared_ptr<const scenes::Scene> scene;
   std::shared_ptr<const core::SmoothTrajectory> motion;
-  core::ConfigNode rig;               ///< the scenario's `rig:` block: {lidar: {...}, imu: {...}, gravity_m_s2}
-  std::string resolved_scenario;      ///< stored as truth/scenario.yaml
-  std::string resolved_motion;        ///< of sim::truth::resolve_motion; stored as truth/motion.yaml
-  core::ConfigNode faults;            ///< the scenario's `faults:` block; absent: nothing is wrong
+  core::ConfigNode rig;           ///< the scenario's `rig:` block: {lidar: {...}, imu: {...}, gravity_m_s2}
+  std::string resolved_scenario;  ///< stored as truth/scenario.yaml
+  std::string resolved_motion;    ///< of sim::truth::resolve_motion; stored as truth/motion.yaml
+  core::ConfigNode faults;        ///< the scenario's `faults:` block; absent: nothing is wrong
+  bool point_truth = false;       ///< store true range, normal and incidence of every point beside its label
 };
 
 struct SimulationSettings {

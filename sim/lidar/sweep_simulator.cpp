@@ -110,12 +110,16 @@ void shift(raycast::Rays& rays, std::size_t i, const Vector3d& by) {
   rays.oz[i] += by.z();
 }
 
-void resize(SimulatedSweep& out, std::size_t n) {
+void resize(SimulatedSweep& out, std::size_t n, bool point_truth) {
   core::LidarSweep& s = out.sweep;
   for (auto* v : {&s.x_m, &s.y_m, &s.z_m, &s.intensity}) v->resize(n);
   s.t_ns.resize(n);
   s.ring.resize(n);
   out.instance.resize(n);
+  out.kind.assign(n, truth::ReturnKind::surface);
+  const std::size_t asked = point_truth ? n : 0;
+  out.true_range_m.resize(asked);
+  for (auto* v : {&out.normal_x, &out.normal_y, &out.normal_z, &out.cos_incidence}) v->resize(asked);
 }
 
 }  // namespace
@@ -132,19 +136,20 @@ SweepSimulator::SweepSimulator(const Profile& profile, const Mode& mode, const M
                                const NoiseOptions& noise, std::uint64_t seed,
                                std::shared_ptr<const raycast::Tracer> tracer,
                                std::shared_ptr<const scenes::Scene> scene,
-                               std::shared_ptr<const core::SmoothTrajectory> motion)
+                               std::shared_ptr<const core::SmoothTrajectory> motion, const Requests& requests)
     : SweepSimulator(profile, FiringTable(profile, mode), mounting, noise, seed, std::move(tracer), std::move(scene),
-                     std::move(motion)) {}
+                     std::move(motion), requests) {}
 
 SweepSimulator::SweepSimulator(const Profile& profile, FiringTable firing, const Mounting& mounting,
                                const NoiseOptions& noise, std::uint64_t seed,
                                std::shared_ptr<const raycast::Tracer> tracer,
                                std::shared_ptr<const scenes::Scene> scene,
-                               std::shared_ptr<const core::SmoothTrajectory> motion)
+                               std::shared_ptr<const core::SmoothTrajectory> motion, const Requests& requests)
     : profile_(profile),
       firing_(std::move(firing)),
       mounting_(mounting),
       options_(noise),
+      requests_(requests),
       tracer_(std::move(tracer)),
       scene_(std::move(scene)),
       motion_(std::move(motion)),
@@ -192,7 +197,7 @@ void SweepSimulator::sweep(std::int64_t index, Workspace& w, SimulatedSweep& out
   out.sweep.sensor = mounting_.sensor;
   out.rays = static_cast<std::size_t>(span.cycles) * firing_.channels();
   out.trace_cpu_s = 0;
-  resize(out, out.rays);
+  resize(out, out.rays, requests_.point_truth);
 
   const raycast::SweepTracer tracer = tracer_for(span);
   const SweepMotion motion = motion_of(span);
@@ -207,9 +212,10 @@ void SweepSimulator::sweep(std::int64_t index, Workspace& w, SimulatedSweep& out
       tracer.trace(w.rays, firing_.tiles(cycles), w.hits);
     out.trace_cpu_s += thread_cpu_s() - before_s;
     measure(span, first, w);
+    if (requests_.point_truth) report_truth(w, points, out);
     points = report(w, points, out);
   }
-  resize(out, points);
+  resize(out, points, requests_.point_truth);
 }
 
 AimedSweep SweepSimulator::aimed(std::int64_t index) const {
@@ -273,6 +279,7 @@ void SweepSimulator::measure(const SweepSpan& span, std::int64_t first, Workspac
   e.channels = firing_.channels();
   e.first_firing = static_cast<std::uint64_t>(span.first_cycle + first) * firing_.channels();
   raw_ranges(e.size(), w.hits.t_m.data(), w.hits.instance.data(), firing_.range_offset_m(), e.range_m.data());
+  if (requests_.point_truth) w.true_range_m = e.range_m;
   e.cos_incidence.swap(w.hits.cos_incidence);
   e.material.swap(w.hits.material);
   reflectance_(e);
@@ -281,6 +288,18 @@ void SweepSimulator::measure(const SweepSpan& span, std::int64_t first, Workspac
   if (options_.channel_bias_scale > 0) channel_bias_(e);
   if (options_.quantisation) quantise(profile_.range_step_m, e);
   intensity_(e);
+}
+
+void SweepSimulator::report_truth(const Workspace& w, std::size_t points, SimulatedSweep& out) const {
+  for (std::size_t i = 0; i < w.echoes.size(); ++i) {
+    if (!reported(w.echoes.range_m[i])) continue;
+    out.true_range_m[points] = w.true_range_m[i];
+    out.normal_x[points] = w.hits.nx[i];
+    out.normal_y[points] = w.hits.ny[i];
+    out.normal_z[points] = w.hits.nz[i];
+    out.cos_incidence[points] = w.echoes.cos_incidence[i];
+    ++points;
+  }
 }
 
 // Returns how many points there are now.

@@ -14,6 +14,7 @@
 #include "sim/lidar/profile.h"
 #include "sim/lidar/sweep_motion.h"
 #include "sim/raycast/tracer.h"
+#include "sim/truth/return_kind.h"
 
 namespace tarmac::sim::lidar {
 
@@ -31,11 +32,20 @@ struct Mounting {
   core::SE3 T_body_lidar = core::SE3::Identity();  ///< true
 };
 
+/// What is made beyond a plain sweep.
+struct Requests {
+  bool point_truth = false;  ///< true range, normal and incidence of every point
+};
+
 /// A sweep and, per point of it, what was hit.
 struct SimulatedSweep {
   core::LidarSweep sweep;
-  std::vector<std::uint32_t> instance;  ///< index into Scene::instances
-  std::size_t rays = 0;
+  std::vector<std::uint32_t> instance;  ///< index into Scene::instances, or raycast::Hits::nothing
+  std::vector<truth::ReturnKind> kind;
+  /// As in truth::PointLabels; empty unless they were asked for.
+  std::vector<double> true_range_m;
+  std::vector<float> normal_x, normal_y, normal_z, cos_incidence;
+  std::size_t rays = 0;    ///< beams that were fired
   double trace_cpu_s = 0;  ///< processor time inside the tracer
 };
 
@@ -46,6 +56,7 @@ struct Workspace {
   Echoes echoes;
   std::vector<Cycle> cycles;
   std::vector<float> x_m, y_m, z_m;            ///< points of all firings, in the sensor's frame
+  std::vector<double> true_range_m;            ///< of all firings, before noise
   std::vector<double> beam_x, beam_y, beam_z;  ///< of all firings, where beams differ from cycle to cycle
 };
 
@@ -71,11 +82,13 @@ class SweepSimulator {
  public:
   SweepSimulator(const Profile& profile, const Mode& mode, const Mounting& mounting, const NoiseOptions& noise,
                  std::uint64_t seed, std::shared_ptr<const raycast::Tracer> tracer,
-                 std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion);
+                 std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion,
+                 const Requests& requests = {});
   /// The same with a head that turns unevenly or fires at recorded times.
   SweepSimulator(const Profile& profile, FiringTable firing, const Mounting& mounting, const NoiseOptions& noise,
                  std::uint64_t seed, std::shared_ptr<const raycast::Tracer> tracer,
-                 std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion);
+                 std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion,
+                 const Requests& requests = {});
 
   const FiringTable& firing() const { return firing_; }
   /// Throws OutOfSpan when the motion does not cover the sweep.
@@ -94,11 +107,14 @@ class SweepSimulator {
   void point_beams(Workspace& w) const;
   void measure(const SweepSpan& span, std::int64_t first, Workspace& w) const;
   std::size_t report(Workspace& w, std::size_t points, SimulatedSweep& out) const;
+  bool reported(double range_m) const { return range_m >= profile_.min_range_m && range_m <= profile_.max_range_m; }
+  void report_truth(const Workspace& w, std::size_t points, SimulatedSweep& out) const;
 
   Profile profile_;
   FiringTable firing_;
   Mounting mounting_;
   NoiseOptions options_;
+  Requests requests_;
   std::shared_ptr<const raycast::Tracer> tracer_;
   std::shared_ptr<const scenes::Scene> scene_;
   std::shared_ptr<const core::SmoothTrajectory> motion_;

@@ -180,6 +180,8 @@ void add_commands(CLI::App& app, Arguments& a) {
   CLI::App* simulate = add(app, a, "simulate", "make a recording, with the truth beside it",
                            [&a] { return simulate_command(a.scenario, a.common); });
   add_scenario_options(simulate, a, true);
+  simulate->add_flag("--point-truth", a.scenario.point_truth,
+                     "store every point's true range, normal and incidence too (as truth.per_point=true)");
 
   CLI::App* estimate = add(app, a, "estimate", "run estimators on a recording (or a plain folder)",
                            [&a] { return estimate_command(a.estimate, a.common); });

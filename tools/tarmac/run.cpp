@@ -56,6 +56,7 @@ Plan make_plan(const ScenarioArguments& arguments, bool with_estimators) {
   Plan plan;
   std::vector<scenarios::Override> overrides;
   for (const std::string& set : arguments.sets) overrides.push_back(scenarios::parse_override(set));
+  if (arguments.point_truth) overrides.emplace_back("truth.per_point", "true");
   const fs::path file = scenarios::find_scenario(arguments.scenario, scenario_folders());
   plan.scenario = scenarios::load_scenario(file, overrides);
   check_world(plan.scenario);
