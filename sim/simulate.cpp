@@ -193,7 +193,10 @@ WrittenImu write_imu(Setup& setup, const SimulationInput& input, RecordingWriter
 
 }  // namespace
 
-Workload workload_of(const ConfigNode& rig, Duration duration) {
+Workload workload_of(const ConfigNode& rig, Duration duration, bool point_truth) {
+  // Measured on the stand, compressed: a point of the recording with its label, the same with its truth, an IMU sample,
+  // a line of truth.tum.
+  constexpr double point_bytes = 11, point_truth_bytes = 18, imu_bytes = 46, tum_bytes_per_s = 118e3;
   const RigOptions options = read_rig(rig);
   Workload work;
   for (std::size_t k = 0; k < options.lidars.size(); ++k) {
@@ -202,6 +205,9 @@ Workload workload_of(const ConfigNode& rig, Duration duration) {
     work.sweeps += sweeps;
     work.rays += sweeps * static_cast<std::size_t>(firing.sweep(0).cycles) * firing.channels();
   }
+  work.bytes = (point_bytes + (point_truth ? point_truth_bytes : 0)) * static_cast<double>(work.rays) +
+               tum_bytes_per_s * to_s(duration);
+  if (options.has_imu) work.bytes += imu_bytes * options.imu.rate_hz * to_s(duration);
   return work;
 }
 
