@@ -59,9 +59,6 @@ struct CycleRays {
   Vector3d shift(const Vector3d& offset, double dt_s) const { return (R + dt_s * S) * offset; }
 };
 
-struct Beams {
-  const double *x, *y, *z, *offset_s;
-};
 struct RayArrays {
   double *ox, *oy, *oz, *dx, *dy, *dz;
 };
@@ -159,7 +156,8 @@ SweepSimulator::SweepSimulator(const Profile& profile, FiringTable firing, const
       reflectance_(scene_->materials),
       detection_(profile, seed, stream_name(mounting.sensor, "detection").c_str()),
       range_noise_(profile, noise.range_scale, seed, stream_name(mounting.sensor, "range_noise").c_str()),
-      channel_bias_(profile, noise.channel_bias_scale, seed, stream_name(mounting.sensor, "channel_bias").c_str()),
+      channel_bias_(profile, noise.channel_bias_scale, seed, stream_name(mounting.sensor, "channel_bias").c_str(),
+                    firing_.profile_channels()),
       intensity_(noise.intensity, seed, stream_name(mounting.sensor, "intensity").c_str()),
       batch_cycles_(std::max<std::size_t>(1, batch_rays / (tile * firing_.channels())) * tile),
       batch_tiles_(firing_.tiles(batch_cycles_)) {
@@ -171,7 +169,7 @@ SweepSimulator::SweepSimulator(const Profile& profile, FiringTable firing, const
     beam_y_.push_back(beam.y());
     beam_z_.push_back(beam.z());
     offset_s_.push_back(1e-9 * firing_.offset_ns(c));
-    ring_.push_back(static_cast<std::uint16_t>(profile_.ring[c]));
+    ring_.push_back(firing_.ring(c));
   }
 }
 
@@ -238,15 +236,16 @@ AimedSweep SweepSimulator::aimed(std::int64_t index) const {
 void SweepSimulator::aim(const SweepSpan& span, const SweepMotion& motion, std::int64_t first, std::size_t cycles,
                          const Vector3d& base, Workspace& w) const {
   const std::size_t channels = firing_.channels();
-  const Beams beams{beam_x_.data(), beam_y_.data(), beam_z_.data(), offset_s_.data()};
   raycast::Rays& rays = w.rays;
   rays.resize(cycles * channels);
   w.cycles.resize(cycles);
+  for (std::size_t k = 0; k < cycles; ++k) w.cycles[k] = firing_.cycle(span, first + static_cast<std::int64_t>(k));
+  if (firing_.beams_change()) point_beams(w);
   for (std::size_t k = 0; k < cycles; ++k) {
-    const Cycle& cycle = w.cycles[k] = firing_.cycle(span, first + static_cast<std::int64_t>(k));
+    const Cycle& cycle = w.cycles[k];
     const CycleRays c(motion.at(cycle.t), mounting_.T_body_lidar, base, cycle, firing_.origin(cycle));
     const std::size_t i = k * channels;
-    aim_cycle(channels, beams, c.R.data(), c.S.data(), c.origin.data(), c.rate.data(),
+    aim_cycle(channels, beams_at(w, i), c.R.data(), c.S.data(), c.origin.data(), c.rate.data(),
               {&rays.ox[i], &rays.oy[i], &rays.oz[i], &rays.dx[i], &rays.dy[i], &rays.dz[i]});
     if (firing_.channel_origins())
       for (std::size_t channel = 0; channel < channels; ++channel)
@@ -255,6 +254,23 @@ void SweepSimulator::aim(const SweepSpan& span, const SweepMotion& motion, std::
     for (std::size_t channel = 0; channel < channels; ++channel)
       rays.t_ns[i + channel] = cycle_ns + firing_.offset_ns(channel);
   }
+}
+
+Beams SweepSimulator::beams_at(const Workspace& w, std::size_t i) const {
+  if (firing_.beams_change()) return {&w.beam_x[i], &w.beam_y[i], &w.beam_z[i], offset_s_.data()};
+  return {beam_x_.data(), beam_y_.data(), beam_z_.data(), offset_s_.data()};
+}
+
+void SweepSimulator::point_beams(Workspace& w) const {
+  const std::size_t channels = firing_.channels();
+  for (auto* v : {&w.beam_x, &w.beam_y, &w.beam_z}) v->resize(w.cycles.size() * channels);
+  for (std::size_t k = 0, i = 0; k < w.cycles.size(); ++k)
+    for (std::size_t c = 0; c < channels; ++c, ++i) {
+      const Vector3d beam = firing_.direction(w.cycles[k], c);
+      w.beam_x[i] = beam.x();
+      w.beam_y[i] = beam.y();
+      w.beam_z[i] = beam.z();
+    }
 }
 
 void SweepSimulator::measure(const SweepSpan& span, std::int64_t first, Workspace& w) const {
@@ -289,14 +305,13 @@ void SweepSimulator::report_truth(const Workspace& w, std::size_t points, Simula
 // Returns how many points there are now.
 std::size_t SweepSimulator::report(Workspace& w, std::size_t points, SimulatedSweep& out) const {
   const std::size_t channels = firing_.channels(), firings = w.echoes.size();
-  const Beams beams{beam_x_.data(), beam_y_.data(), beam_z_.data(), offset_s_.data()};
   const Echoes& e = w.echoes;
   for (auto* v : {&w.x_m, &w.y_m, &w.z_m}) v->resize(firings);
   core::LidarSweep& to = out.sweep;
   for (std::size_t k = 0, i = 0; k < w.cycles.size(); ++k) {
     const Cycle cycle = w.cycles[k].reported();
     const Vector3d origin = firing_.origin(cycle);
-    place_cycle(channels, beams, cycle.cos_azimuth, cycle.sin_azimuth, origin.data(), firing_.range_offset_m(),
+    place_cycle(channels, beams_at(w, i), cycle.cos_azimuth, cycle.sin_azimuth, origin.data(), firing_.range_offset_m(),
                 &e.range_m[i], &w.x_m[i], &w.y_m[i], &w.z_m[i]);
     if (firing_.channel_origins()) {
       const Matrix3d turn = turned_by(cycle);

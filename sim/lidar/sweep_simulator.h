@@ -1,4 +1,4 @@
-/// One spinning LiDAR on a moving body: firing times to rays to echoes to points.
+/// One scanning LiDAR on a moving body: firing times to rays to echoes to points.
 #pragma once
 
 #include <cstdint>
@@ -97,6 +97,8 @@ class SweepSimulator {
   SweepMotion motion_of(const SweepSpan& span) const;
   void aim(const SweepSpan& span, const SweepMotion& motion, std::int64_t first, std::size_t cycles,
            const Eigen::Vector3d& base, Workspace& w) const;
+  Beams beams_at(const Workspace& w, std::size_t i) const;  // of the cycle whose first firing is i
+  void point_beams(Workspace& w) const;
   void measure(const SweepSpan& span, std::int64_t first, Workspace& w) const;
   std::size_t report(Workspace& w, std::size_t points, SimulatedSweep& out) const;
   bool reported(double range_m) const { return range_m >= profile_.min_range_m && range_m <= profile_.max_range_m; }

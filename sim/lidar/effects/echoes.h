@@ -117,10 +117,12 @@ struct Brightness {
   void operator()(Echoes& echoes) const;
 };
 
-/// A constant range error of each channel, drawn once a sensor.
+/// A constant range error of each channel, drawn once a sensor. `channels`: whose firings a cycle holds, in their
+/// order; empty: every channel's of the profile, one after the other.
 class ChannelBias {
  public:
-  ChannelBias(const Profile& profile, double scale, std::uint64_t seed, const char* stream);
+  ChannelBias(const Profile& profile, double scale, std::uint64_t seed, const char* stream,
+              std::span<const std::uint32_t> channels = {});
   void operator()(Echoes& echoes) const;
   std::span<const double> bias_m() const { return bias_m_; }
 
