@@ -47,6 +47,14 @@ std::string speed_note(const PipelineTotals& totals, double simulated_s, double 
                      simulated_s / wall_s);
 }
 
+lidar::Requests requests_of(const RigOptions& rig, bool point_truth) {
+  lidar::Requests requests;
+  requests.point_truth = point_truth;
+  requests.beam = rig.lidar.beam;
+  requests.body = rig.body;
+  return requests;
+}
+
 std::int64_t sweeps_within(const lidar::FiringTable& firing, const SimulationInput& input) {
   const Time end = std::min(Time(input.duration), input.motion->end());
   const std::int64_t count = firing.sweeps_until(end);
@@ -137,7 +145,7 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   const lidar::SweepSimulator simulator(options.lidar.profile, firing_table(options, input.seed),
                                         {.sensor = 0, .T_body_lidar = setup.truth.lidars[0].T_body_lidar},
                                         options.lidar.noise, input.seed, tracer, input.scene, input.motion,
-                                        {.point_truth = input.point_truth});
+                                        requests_of(options, input.point_truth));
   const std::int64_t count = sweeps_within(simulator.firing(), input);
 
   const faults::LidarFaults faults = lidar_faults(simulator.firing(), count, input.seed, setup);

@@ -8,7 +8,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-
 TARMAC_VECTOR_LOOP void point(std::size_t channels, const double* __restrict bx, const double* __restrict by,
                               const double* __restrict bz, const double* __restrict offset_s,
                               const double* __restrict R, const double* __restrict S, double* __restrict dx,
@@ -45,6 +44,19 @@ void BeamTable::push_back(const Vector3d& beam) {
   z.push_back(beam.z());
 }
 
+void BeamTable::clear() {
+  x.clear();
+  y.clear();
+  z.clear();
+}
+
+void AimedCycles::clear() {
+  cycles.clear();
+  rays.clear();
+  t_ns.clear();
+  own.clear();
+}
+
 Matrix3d turned_by(const Cycle& cycle) {
   Matrix3d turn;
   turn << cycle.cos_azimuth, cycle.sin_azimuth, 0, -cycle.sin_azimuth, cycle.cos_azimuth, 0, 0, 0, 1;
@@ -73,30 +85,30 @@ Aim::Aim(const FiringTable& firing, const core::SE3& T_body_lidar) : T_body_lida
   }
 }
 
+void Aim::add_cycle(const FiringTable& firing, const Cycle& cycle, const BodyState& body, const Vector3d& base,
+                    std::int32_t t_ns, AimedCycles& out) const {
+  out.cycles.push_back(cycle);
+  out.rays.emplace_back(body, T_body_lidar_, base, cycle, firing.origin(cycle));
+  out.t_ns.push_back(t_ns);
+  if (!firing.beams_change()) return;
+  for (std::size_t c = 0; c < channels(); ++c) out.own.push_back(firing.direction(cycle, c));
+}
+
 void Aim::cycles(const FiringTable& firing, const SweepSpan& span, const SweepMotion& motion, std::int64_t first,
                  std::size_t count, const Vector3d& base, AimedCycles& out) const {
-  out.cycles.clear();
-  out.rays.clear();
-  out.t_ns.clear();
+  out.clear();
   for (std::size_t k = 0; k < count; ++k) {
     const Cycle cycle = firing.cycle(span, first + static_cast<std::int64_t>(k));
-    out.cycles.push_back(cycle);
-    out.rays.emplace_back(motion.at(cycle.t), T_body_lidar_, base, cycle, firing.origin(cycle));
-    out.t_ns.push_back(static_cast<std::int32_t>((cycle.t - span.begin).count()));
+    add_cycle(firing, cycle, motion.at(cycle.t), base, static_cast<std::int32_t>((cycle.t - span.begin).count()), out);
   }
 }
 
 void Aim::body_cycles(const FiringTable& firing, const SweepSpan& span, std::int64_t first, std::size_t count,
                       AimedCycles& out) const {
   const BodyState still{Matrix3d::Identity(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
-  out.cycles.clear();
-  out.rays.clear();
-  out.t_ns.assign(count, 0);
-  for (std::size_t k = 0; k < count; ++k) {
-    const Cycle cycle = firing.cycle(span, first + static_cast<std::int64_t>(k));
-    out.cycles.push_back(cycle);
-    out.rays.emplace_back(still, T_body_lidar_, Vector3d::Zero(), cycle, firing.origin(cycle));
-  }
+  out.clear();
+  for (std::size_t k = 0; k < count; ++k)
+    add_cycle(firing, firing.cycle(span, first + static_cast<std::int64_t>(k)), still, Vector3d::Zero(), 0, out);
 }
 
 void Aim::rays(const FiringTable& firing, const AimedCycles& cycles, raycast::Rays& out) const {
@@ -104,8 +116,8 @@ void Aim::rays(const FiringTable& firing, const AimedCycles& cycles, raycast::Ra
   out.resize(cycles.cycles.size() * n);
   for (std::size_t k = 0, i = 0; k < cycles.cycles.size(); ++k, i += n) {
     const CycleRays& c = cycles.rays[k];
-    point(n, beams_.x.data(), beams_.y.data(), beams_.z.data(), offset_s_.data(), c.R.data(), c.S.data(), &out.dx[i],
-          &out.dy[i], &out.dz[i]);
+    const BeamArrays b = beams(cycles, k);
+    point(n, b.x, b.y, b.z, offset_s_.data(), c.R.data(), c.S.data(), &out.dx[i], &out.dy[i], &out.dz[i]);
     place(n, offset_s_.data(), c.origin.data(), c.rate.data(), &out.ox[i], &out.oy[i], &out.oz[i]);
     if (firing.channel_origins())
       for (std::size_t channel = 0; channel < n; ++channel) {
@@ -120,9 +132,10 @@ void Aim::rays(const FiringTable& firing, const AimedCycles& cycles, raycast::Ra
 
 void Aim::directions(const AimedCycles& cycles, const BeamTable& beams, double* dx, double* dy, double* dz) const {
   const std::size_t n = channels();
-  for (std::size_t k = 0, i = 0; k < cycles.cycles.size(); ++k, i += n)
-    point(n, beams.x.data(), beams.y.data(), beams.z.data(), offset_s_.data(), cycles.rays[k].R.data(),
-          cycles.rays[k].S.data(), dx + i, dy + i, dz + i);
+  for (std::size_t k = 0, i = 0; k < cycles.cycles.size(); ++k, i += n) {
+    const BeamArrays b = of_cycle(beams, k);
+    point(n, b.x, b.y, b.z, offset_s_.data(), cycles.rays[k].R.data(), cycles.rays[k].S.data(), dx + i, dy + i, dz + i);
+  }
 }
 
 }  // namespace tarmac::sim::lidar

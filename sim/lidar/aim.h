@@ -11,11 +11,12 @@
 
 namespace tarmac::sim::lidar {
 
-/// One direction a channel, at azimuth 0, as unit vectors of the sensor frame.
+/// Directions as unit vectors of the sensor frame with the head at azimuth 0: one a channel, or one a firing.
 struct BeamTable {
   std::vector<double> x, y, z;
   std::size_t size() const { return x.size(); }
   void push_back(const Eigen::Vector3d& beam);
+  void clear();
 };
 
 /// The beams of one firing cycle: o = origin + dt rate, d = (R + dt S) b, for beams b of the head's frame.
@@ -35,6 +36,13 @@ struct AimedCycles {
   std::vector<Cycle> cycles;
   std::vector<CycleRays> rays;
   std::vector<std::int32_t> t_ns;  ///< of each cycle, from the sweep's begin
+  BeamTable own;                   ///< one a firing, where beams differ from cycle to cycle; else empty
+  void clear();
+};
+
+/// One cycle's beams.
+struct BeamArrays {
+  const double *x, *y, *z;
 };
 
 /// Turns the sensor's beams by -azimuth about z: azimuths are clockwise.
@@ -46,7 +54,10 @@ class Aim {
   Aim(const FiringTable& firing, const core::SE3& T_body_lidar);
 
   std::size_t channels() const { return beams_.size(); }
-  const BeamTable& beams() const { return beams_; }
+  const BeamTable& beams() const { return beams_; }  ///< one a channel
+  BeamArrays beams(const AimedCycles& cycles, std::size_t k) const {
+    return of_cycle(cycles.own.size() > 0 ? cycles.own : beams_, k);
+  }
   const std::vector<Eigen::Vector3d>& origin_offset() const { return origin_offset_; }
 
   /// Cycles first, first + 1, ... of the sweep, seen from `base` [world].
@@ -57,10 +68,18 @@ class Aim {
                    AimedCycles& out) const;
   /// The rays of all channels, cycle after cycle.
   void rays(const FiringTable& firing, const AimedCycles& cycles, raycast::Rays& out) const;
-  /// Directions of other beams that leave when and where the channels do; arrays of cycles x channels.
+  /// Directions of other beams that leave when and where the channels do (one a channel, or one a firing of these
+  /// cycles); arrays of cycles x channels.
   void directions(const AimedCycles& cycles, const BeamTable& beams, double* dx, double* dy, double* dz) const;
 
  private:
+  BeamArrays of_cycle(const BeamTable& table, std::size_t k) const {
+    const std::size_t i = table.size() > channels() ? k * channels() : 0;
+    return {&table.x[i], &table.y[i], &table.z[i]};
+  }
+  void add_cycle(const FiringTable& firing, const Cycle& cycle, const BodyState& body, const Eigen::Vector3d& base,
+                 std::int32_t t_ns, AimedCycles& out) const;
+
   core::SE3 T_body_lidar_;
   BeamTable beams_;
   std::vector<double> offset_s_;

@@ -32,8 +32,8 @@ struct BeamOptions {
   bool dual() const { return returns == "dual"; }
 };
 
-/// Throws InputError at `node` (the block) for a number of rays that is none of 1, 3 and 7, or where the sensor's profile
-/// does not say how wide its beams are.
+/// Throws InputError at `node` (the block) for a number of rays that is none of 1, 3 and 7, or where the sensor's
+/// profile does not say how wide its beams are.
 void check_beam(const core::ConfigNode& node, const BeamOptions& options, const Profile& profile);
 
 }  // namespace tarmac::sim::lidar

@@ -37,8 +37,8 @@ const Part& main_part(std::span<const Part> parts) {
 
 Echo echo_of(std::span<const Part> parts) {
   const Part& main = main_part(parts);
-  Echo echo{parts.front().t_m, parts.front().signal, main.cos_incidence, main.nx, main.ny, main.nz, main.instance,
-            main.kind};
+  Echo echo{parts.front().t_m, parts.front().signal, main.cos_incidence, main.nx, main.ny,
+            main.nz,           main.instance,        main.kind};
   if (parts.size() == 1) return echo;
   double sum = 0, moment = 0;
   bool mixed = false;
@@ -63,8 +63,8 @@ void tell_apart(std::vector<Part>& parts, double separation_m, std::vector<Echo>
   std::size_t surfaces = 0;
   for (std::size_t first = 0; first < parts.size();) {
     std::size_t last = first + 1;
-    while (last < parts.size() && (parts[last].t_m - parts[last - 1].t_m <= separation_m ||
-                                   on_one_plane(parts[last - 1], parts[last])))
+    while (last < parts.size() &&
+           (parts[last].t_m - parts[last - 1].t_m <= separation_m || on_one_plane(parts[last - 1], parts[last])))
       ++last;
     echoes.push_back(echo_of(std::span(parts).subspan(first, last - first)));
     const ReturnKind kind = echoes.back().kind;

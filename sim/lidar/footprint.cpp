@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace tarmac::sim::lidar {
@@ -35,33 +36,40 @@ std::vector<double> angles_around(int rays) {
 
 }  // namespace
 
-Footprint make_footprint(const BeamTable& centre, const Profile& profile, int rays) {
-  Footprint result;
-  result.weight = {1};
+Footprint::Footprint(const Profile& profile, int rays) : weight_{1} {
   for (const double angle : angles_around(rays)) {
-    const double horizontal = 0.5e-3 * profile.divergence_mrad[0] * Footprint::offset * std::cos(angle);
-    const double vertical = 0.5e-3 * profile.divergence_mrad[1] * Footprint::offset * std::sin(angle);
-    BeamTable table;
-    for (std::size_t c = 0; c < centre.size(); ++c)
-      table.push_back(turned_aside(beam_of(centre, c), horizontal, vertical));
-    result.around.push_back(std::move(table));
-    result.weight.push_back(std::exp(-ln_2 * Footprint::offset * Footprint::offset));
+    horizontal_rad_.push_back(0.5e-3 * profile.divergence_mrad[0] * offset * std::cos(angle));
+    vertical_rad_.push_back(0.5e-3 * profile.divergence_mrad[1] * offset * std::sin(angle));
+    weight_.push_back(std::exp(-ln_2 * offset * offset));
   }
   double sum = 0;
-  for (const double w : result.weight) sum += w;
-  for (double& w : result.weight) w /= sum;
+  for (const double w : weight_) sum += w;
+  for (double& w : weight_) w /= sum;
+}
+
+BeamTable Footprint::table(const BeamTable& centre, std::size_t k) const {
+  BeamTable result;
+  for (std::size_t i = 0; i < centre.size(); ++i)
+    result.push_back(turned_aside(beam_of(centre, i), horizontal_rad_[k], vertical_rad_[k]));
   return result;
 }
 
 std::vector<Above> beams_above(const FiringTable& firing, const BeamTable& beams) {
-  std::vector<std::size_t> order(beams.size());
-  for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return beams.z[a] < beams.z[b]; });
+  constexpr double same_row = 1e-4;
   std::vector<Above> above(beams.size());
-  for (std::size_t k = 0; k + 1 < order.size(); ++k) {
-    const std::size_t c = order[k], next = order[k + 1];
-    const double lag_rad = azimuth_rad(beams, c) - azimuth_rad(beams, next);
-    above[c] = {std::llround(lag_rad / firing.step_rad()), static_cast<std::int32_t>(next)};
+  for (std::size_t c = 0; c < beams.size(); ++c) {
+    double next = std::numeric_limits<double>::infinity();  // z of the next row
+    for (const double z : beams.z)
+      if (z > beams.z[c] + same_row) next = std::min(next, z);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t other = 0; other < beams.size(); ++other) {
+      if (std::abs(beams.z[other] - next) > same_row) continue;
+      const double lag = (azimuth_rad(beams, c) - azimuth_rad(beams, other)) / firing.step_rad(),
+                   whole = std::round(lag);
+      if (std::abs(lag - whole) >= nearest) continue;
+      nearest = std::abs(lag - whole);
+      above[c] = {static_cast<std::int64_t>(whole), static_cast<std::int32_t>(other)};
+    }
   }
   return above;
 }
@@ -69,13 +77,13 @@ std::vector<Above> beams_above(const FiringTable& firing, const BeamTable& beams
 std::vector<std::vector<Beside>> beams_beside(const FiringTable& firing, const BeamTable& beams,
                                               const Profile& profile) {
   constexpr double widths = 1.5, leak = 0.01;
-  constexpr double channels_off = 2;
+  constexpr int channels_off = 2;
   std::vector<std::vector<Beside>> result(beams.size());
-  if (profile.divergence_mrad.empty()) return result;
+  if (profile.divergence_mrad.empty() || firing.beams_change()) return result;
   const double width = 1e-3 * std::max(profile.divergence_mrad[0], profile.divergence_mrad[1]), most = widths * width;
   for (std::size_t c = 0; c < beams.size(); ++c)
     for (std::size_t other = 0; other < beams.size(); ++other) {
-      if (std::abs(profile.ring[other] - profile.ring[c]) > channels_off) continue;
+      if (std::abs(static_cast<int>(firing.ring(other)) - static_cast<int>(firing.ring(c))) > channels_off) continue;
       const double up = std::asin(beams.z[other]) - std::asin(beams.z[c]);
       if (std::abs(up) > most) continue;
       const double flat = std::cos(std::asin(beams.z[c])), lag = azimuth_rad(beams, c) - azimuth_rad(beams, other);

@@ -33,7 +33,8 @@ double of_two_faces(double face) {
 PaneShares clear_pane(double cos_incidence) {
   const double c = std::clamp(cos_incidence, 1e-6, 1.0), n = refractive_index;
   const double inside = std::sqrt(1 - (1 - c * c) / (n * n));
-  const double s = std::pow((c - n * inside) / (c + n * inside), 2), p = std::pow((n * c - inside) / (n * c + inside), 2);
+  const double s = std::pow((c - n * inside) / (c + n * inside), 2),
+               p = std::pow((n * c - inside) / (n * c + inside), 2);
   const double reflected = 0.5 * (of_two_faces(s) + of_two_faces(p));
   return {reflected, 1 - reflected};
 }
@@ -51,7 +52,7 @@ void PaneRays::clear() {
   ray.clear();
   weight.clear();
   t_m.clear();
-  for (auto* v : {&nx, &ny, &nz, &cos_incidence}) v->clear();
+  for (auto* v : {&nx, &ny, &nz}) v->clear();
   material.clear();
 }
 
@@ -76,7 +77,7 @@ ReturnKind Glass::own_kind(std::uint16_t material, float signal, float cos_incid
   return static_cast<double>(signal) > 2 * dirt ? ReturnKind::glint : ReturnKind::dirt;
 }
 
-void Glass::follow(const SweepTracer& tracer, const PaneRays& first, std::vector<PartOfBeam>& parts) const {
+std::size_t Glass::follow(const SweepTracer& tracer, const PaneRays& first, std::vector<PartOfBeam>& parts) const {
   std::vector<Path> paths;
   for (std::size_t i = 0; i < first.size(); ++i) {
     const Rays& r = first.rays;
@@ -84,15 +85,27 @@ void Glass::follow(const SweepTracer& tracer, const PaneRays& first, std::vector
     const Vector3d met = o + first.t_m[i] * d;
     const double cosine = -n.dot(d);
     const PaneShares shares = pane_shares(materials_[first.material[i]], cosine);
-    const Path through{met + leave_m * d, d, r.t_ns[i], first.beam[i], first.ray[i],
-                       first.weight[i] * shares.transmitted * shares.transmitted, first.t_m[i] + leave_m, 1, false};
+    const Path through{met + leave_m * d,
+                       d,
+                       r.t_ns[i],
+                       first.beam[i],
+                       first.ray[i],
+                       first.weight[i] * shares.transmitted * shares.transmitted,
+                       first.t_m[i] + leave_m,
+                       1,
+                       false};
     paths.push_back(through);
     if (!ghosts_) continue;
     const Vector3d off = (d + 2 * cosine * n).normalized();
     paths.push_back({met + leave_m * off, off, r.t_ns[i], first.beam[i], first.ray[i],
                      first.weight[i] * shares.reflected * shares.reflected, first.t_m[i] + leave_m, 1, true});
   }
-  while (!paths.empty()) meet(tracer, paths, parts);
+  std::size_t traced = 0;
+  while (!paths.empty()) {
+    traced += paths.size();
+    meet(tracer, paths, parts);
+  }
+  return traced;
 }
 
 /// One step on all paths; those that met a pane and go on are left in `paths`.
@@ -120,7 +133,7 @@ void Glass::meet(const SweepTracer& tracer, std::vector<Path>& paths, std::vecto
     Part part{.t_m = p.way_m + hits.t_m[i],
               .signal = static_cast<float>(p.power) * signal[i],
               .cos_incidence = hits.cos_incidence[i],
-              .plane_m = static_cast<float>(-(p.way_m + hits.t_m[i]) * static_cast<double>(hits.cos_incidence[i])),
+              .plane_m = static_cast<float>((p.way_m + hits.t_m[i]) * static_cast<double>(hits.cos_incidence[i])),
               .nx = hits.nx[i],
               .ny = hits.ny[i],
               .nz = hits.nz[i],
@@ -129,8 +142,8 @@ void Glass::meet(const SweepTracer& tracer, std::vector<Path>& paths, std::vecto
               .kind = kind};
     parts.push_back({p.beam, part});
     if (!pane || p.mirrored || p.panes == max_panes) continue;
-    const double through = pane_shares(materials_[hits.material[i]],
-                                       static_cast<double>(hits.cos_incidence[i])).transmitted;
+    const double through =
+        pane_shares(materials_[hits.material[i]], static_cast<double>(hits.cos_incidence[i])).transmitted;
     const double step_m = hits.t_m[i] + leave_m;
     on.push_back({p.origin + step_m * p.direction, p.direction, p.t_ns, p.beam, p.ray, p.power * through * through,
                   p.way_m + step_m, p.panes + 1, false});
@@ -142,7 +155,8 @@ std::vector<scenes::Material> seen_by_a_beam(std::vector<scenes::Material> mater
                                              double flatness_rad) {
   for (scenes::Material& m : materials)
     if (m.transmission > 0 && m.ggx_alpha > 0)
-      m.ggx_alpha = std::sqrt(m.ggx_alpha * m.ggx_alpha + divergence_rad * divergence_rad / 4 + flatness_rad * flatness_rad);
+      m.ggx_alpha =
+          std::sqrt(m.ggx_alpha * m.ggx_alpha + divergence_rad * divergence_rad / 4 + flatness_rad * flatness_rad);
   return materials;
 }
 

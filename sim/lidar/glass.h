@@ -32,7 +32,6 @@ struct PaneRays {
   std::vector<double> weight;       ///< of the ray in the beam
   std::vector<double> t_m;          ///< where the pane was met
   std::vector<float> nx, ny, nz;    ///< of the pane, against the ray
-  std::vector<float> cos_incidence;
   std::vector<std::uint16_t> material;
   std::size_t size() const { return beam.size(); }
   void clear();
@@ -55,7 +54,8 @@ class Glass {
   bool is_pane(std::uint16_t material) const { return pane_[material] != 0; }
   /// Its own return: glint where its mirror gives more than the dirt on it.
   ReturnKind own_kind(std::uint16_t material, float signal, float cos_incidence) const;
-  void follow(const raycast::SweepTracer& tracer, const PaneRays& first, std::vector<PartOfBeam>& parts) const;
+  /// Returns how many rays it traced.
+  std::size_t follow(const raycast::SweepTracer& tracer, const PaneRays& first, std::vector<PartOfBeam>& parts) const;
 
  private:
   struct Path;

@@ -68,18 +68,19 @@ void check_body(const core::ConfigNode& node, const BodyOptions& o, const core::
   const std::vector<std::string> kinds = body_kinds();
   if (std::find(kinds.begin(), kinds.end(), o.kind) == kinds.end()) {
     const std::string guess = core::did_you_mean(o.kind, kinds);
-    node.fail_at("kind", fmt::format("'{}' is no body{}; there are: {}", o.kind,
-                                     guess.empty() ? "" : fmt::format(", did you mean '{}'?", guess),
-                                     fmt::join(kinds, ", ")));
+    node.fail_at("kind",
+                 fmt::format("'{}' is no body{}; there are: {}", o.kind,
+                             guess.empty() ? "" : fmt::format(", did you mean '{}'?", guess), fmt::join(kinds, ", ")));
   }
   if (o.kind != "box") return;
   const Vector3d p = T_body_lidar.translation();
   const bool inside = p.x() > -o.rear_overhang_m && p.x() < o.length_m - o.rear_overhang_m &&
                       std::abs(p.y()) < o.width_m / 2 && p.z() > underside_m && p.z() < o.height_m;
   if (inside)
-    node.fail(fmt::format("the LiDAR stands at ({}, {}, {}) m, inside the body's box: it would see nothing else; raise "
-                          "T_body_lidar above height_m",
-                          p.x(), p.y(), p.z()));
+    node.fail(
+        fmt::format("the LiDAR stands at ({}, {}, {}) m, inside the body's box: it would see nothing else; raise "
+                    "T_body_lidar above height_m",
+                    p.x(), p.y(), p.z()));
 }
 
 scenes::Mesh body_mesh(const BodyOptions& o) {

@@ -283,8 +283,8 @@ void Profile::visit(core::OptionVisitor& v) {
   v("sigma_from_m", sigma_from_m, "ranges at which sigma_m changes", {.at_least = 0});
   v("sigma_m", sigma_m, "range noise, one standard deviation", {.at_least = 0});
   v("channel_bias_sigma_m", channel_bias_sigma_m, "spread of the constant range errors of channels", {.at_least = 0});
-  v("divergence_mrad", divergence_mrad, "[horizontal, vertical] full width of a beam at half its intensity; [] = unknown",
-    {.above = 0, .at_most = 100});
+  v("divergence_mrad", divergence_mrad,
+    "[horizontal, vertical] full width of a beam at half its intensity; [] = unknown", {.above = 0, .at_most = 100});
   v("pulse_length_ns", pulse_length_ns, "of the laser's pulse: echoes closer than half of its way become one",
     {.above = 0, .at_most = 1000});
   v("elevation_deg", elevation_deg, "of each channel, positive up", {.at_least = -90, .at_most = 90});

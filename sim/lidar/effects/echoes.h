@@ -93,7 +93,7 @@ class RangeNoise {
 class SnrNoise {
  public:
   static constexpr double reference_signal = 0.8;
-  static constexpr double max_ratio = 100;     ///< of variances: the darkest echo that is detected at all
+  static constexpr double max_ratio = 100;   ///< of variances: the darkest echo that is detected at all
   static constexpr double max_tangent = 12;  ///< of the incidence: beyond 85 degrees the sheet's spot ends
   SnrNoise(const Profile& profile, double scale, double smear, std::uint64_t seed, const char* stream);
   void operator()(Echoes& echoes) const;

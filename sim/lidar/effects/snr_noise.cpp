@@ -10,8 +10,9 @@ SnrNoise::SnrNoise(const Profile& p, double scale, double smear, std::uint64_t s
       from_m_(p.sigma_from_m),
       sigma_m_(p.sigma_m),
       scale_(scale),
-      spread_(p.divergence_mrad.empty() ? 0
-                                        : smear * 1e-3 * std::sqrt(p.divergence_mrad.front() * p.divergence_mrad.back())) {}
+      spread_(p.divergence_mrad.empty()
+                  ? 0
+                  : smear * 1e-3 * std::sqrt(p.divergence_mrad.front() * p.divergence_mrad.back())) {}
 
 double SnrNoise::sigma_m(double range_m, double signal, double cos_incidence) const {
   std::size_t row = 0;
@@ -26,8 +27,8 @@ void SnrNoise::operator()(Echoes& echoes) const {
   echoes.draw(stream_);
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     if (echoes.range_m[i] <= 0) continue;
-    const double sigma = sigma_m(echoes.range_m[i], static_cast<double>(echoes.signal[i]),
-                                 static_cast<double>(echoes.cos_incidence[i]));
+    const double sigma =
+        sigma_m(echoes.range_m[i], static_cast<double>(echoes.signal[i]), static_cast<double>(echoes.cos_incidence[i]));
     echoes.range_m[i] += sigma * static_cast<double>(echoes.draws[i]);
   }
 }
