@@ -23,8 +23,9 @@ struct LidarOptions {
   /// A bundled sensor's name or the path of a sensor file (lidar/profile_file.h), relative to the file that says it or,
   /// from `--set`, to the working directory. After read_rig: a name; the sensor is in `profile`.
   std::string model = "ouster-os1-64-gen2";
-  int columns = 0;           ///< 0: the model's default
-  double sweep_rate_hz = 0;  ///< 0: the model's default
+  int columns = 0;             ///< 0: the model's default
+  double sweep_rate_hz = 0;    ///< 0: the model's default
+  double start_offset_ms = 0;  ///< when its first sweep begins: the phase between LiDARs
   core::SE3 T_body_lidar = core::SE3::Identity();
   lidar::NoiseOptions noise;
   lidar::SpinOptions spin;
@@ -40,8 +41,9 @@ struct LidarOptions {
 };
 
 struct RigOptions {
-  LidarOptions lidar;
-  bool has_imu = false;  ///< the block is there: without it the rig carries none
+  std::vector<LidarOptions> lidars{1};  ///< at least one
+  bool listed = false;                  ///< written as `lidars: [...]`, not as one `lidar:` block
+  bool has_imu = false;                 ///< the block is there: without it the rig carries none
   ImuOptions imu;
   double gravity_m_s2 = 9.80665;
   lidar::BodyOptions body;
@@ -50,8 +52,8 @@ struct RigOptions {
 
 /// Options with the model's defaults filled in and its files read. Throws InputError with file and line.
 RigOptions read_rig(const core::ConfigNode& rig);
-/// When and where the LiDAR fires; `seed` draws its spin jitter.
-lidar::FiringTable firing_table(const RigOptions& options, std::uint64_t seed);
+/// When and where a LiDAR fires; `seed` draws its spin jitter.
+lidar::FiringTable firing_table(const RigOptions& options, std::uint64_t seed, std::size_t lidar = 0);
 /// The data sheet that goes with the recording: nominal values, which here are the true ones.
 core::Rig data_sheet(const RigOptions& options);
 

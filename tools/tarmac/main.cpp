@@ -238,14 +238,20 @@ void add_commands(CLI::App& app, Arguments& a) {
                                          [&a] { return import_command(a.transfer, a.common); })
                                    : add(app, a, "export", "write a recording or a trajectory in another format",
                                          [&a] { return export_command(a.transfer, a.common); });
-    transfer->add_option("--format", a.transfer.format, "plain, kitti or tum")
+    std::vector<std::string> formats = {"plain", "kitti", "tum"};
+    if (!importing) formats.push_back("exr");
+    transfer->add_option("--format", a.transfer.format, importing ? "plain, kitti or tum" : "plain, kitti, tum or exr")
         ->required()
-        ->check(CLI::IsMember({"plain", "kitti", "tum"}));
+        ->check(CLI::IsMember(formats));
     transfer->add_option("from", a.transfer.from, importing ? "what to read" : "folder of a run or a recording")
         ->required();
     transfer->add_option("-o,--out", a.transfer.to, "what to write")->required();
-    if (!importing)
-      transfer->add_option("-e,--estimator", a.transfer.estimator, "whose trajectory (default: the truth's)");
+    if (importing) continue;
+    transfer->add_option("-e,--estimator", a.transfer.estimator, "whose trajectory (default: the truth's)");
+    transfer->add_option("--sweep", a.transfer.sweep, "exr: index of the one sweep to write (default: all)")
+        ->check(CLI::NonNegativeNumber);
+    transfer->add_option("--lidar", a.transfer.lidar, "exr: number of the LiDAR")->check(CLI::NonNegativeNumber);
+    transfer->add_flag("--no-truth", a.transfer.no_truth, "exr: leave out normal, incidence, label and the like");
   }
 }
 

@@ -71,10 +71,10 @@ TEST_F(UserSensor, ScenarioFindsItsSensorBesideItselfAndResolvesToOneThatNeedsNo
   const ConfigNode again = ConfigNode::parse(resolved, "resolved.yaml");
   EXPECT_EQ(resolve_rig(again), resolved);
   const RigOptions options = read_rig(again);
-  EXPECT_EQ(options.lidar.model, "mine");
-  EXPECT_EQ(options.lidar.sweep_rate_hz, 20);
-  EXPECT_EQ(options.lidar.profile.elevation_deg, (std::vector<double>{-3, -1, 1, 3.25}));
-  EXPECT_EQ(options.lidar.profile.firing_us, (std::vector<double>{0, 1.5, 3, 4.5}));
+  EXPECT_EQ(options.lidars[0].model, "mine");
+  EXPECT_EQ(options.lidars[0].sweep_rate_hz, 20);
+  EXPECT_EQ(options.lidars[0].profile.elevation_deg, (std::vector<double>{-3, -1, 1, 3.25}));
+  EXPECT_EQ(options.lidars[0].profile.firing_us, (std::vector<double>{0, 1.5, 3, 4.5}));
   EXPECT_EQ(data_sheet(options).lidars.at(0).model, "mine");
   EXPECT_EQ(data_sheet(options).lidars.at(0).max_range_m, 80);
 }
@@ -94,7 +94,7 @@ TEST_F(UserSensor, PathGivenOnTheCommandLineIsTheCommandLines) {
       write("mine.yaml", std::string(clock_timing) + optics + "elevation_deg: [0, 1]\nazimuth_offset_cw_deg: [0, 0]\n");
   ConfigNode scenario = ConfigNode::parse("rig: {lidar: {model: vlp-16}}\n", "/nowhere/scenario.yaml");
   scenario.set("rig.lidar.model", fs::relative(sensor).string());
-  EXPECT_EQ(read_rig(scenario.child("rig")).lidar.profile.channels(), 2u);
+  EXPECT_EQ(read_rig(scenario.child("rig")).lidars[0].profile.channels(), 2u);
 }
 
 TEST_F(UserSensor, MissingFieldsAreNamedOneByOne) {
