@@ -97,6 +97,7 @@ struct AircraftType {
   double length_m, span_m;
   double height_min_m, height_max_m;  ///< light to heavy
   double floor_z_m;                   ///< cabin floor = door sill, above ground
+  double belly_clearance_m;           ///< of the lowest fairing (not of gear and engines)
   std::vector<FuselageStation> stations;
   LandingGear nose_gear;
   std::vector<LandingGear> main_gear;

@@ -21,6 +21,7 @@ struct FuselageSection {
   /// Angle of height z: -pi/2 at the bottom, 0 at the widest line, pi/2 at the top.
   double angle(double z_m) const;
   Eigen::Vector2d yz(double angle_rad) const;
+  double underside_m(double y_m) const;  ///< height of the lower skin
 };
 FuselageSection fuselage_section(const AircraftType& type, double x_m);
 
@@ -35,5 +36,25 @@ struct FuselageShape {
   double tail_tip_half_width_m = 0.2, tail_tip_half_height_m = 0.25;
 };
 std::vector<FuselageStation> fuselage_stations(const FuselageShape& shape);
+/// Where the crown of the nose reaches a height above the cabin floor [m].
+double station_of_crown_m(const std::vector<FuselageStation>& stations, double top_m);
+
+/// Flight deck windows by the height of their edges above the cabin floor; where they begin and end along the nose
+/// follows from the crown.
+struct CockpitShape {
+  double low_m, high_m, panes_length_m;
+  int side_panes;
+};
+CockpitWindows derived_cockpit(const std::vector<FuselageStation>& stations, const CockpitShape& shape);
+
+/// Chord and leading edge of a wing or tailplane over y (left side).
+double surface_chord_m(const SurfacePlan& plan, double y_m);
+double surface_le_x_m(const SurfacePlan& plan, double y_m);
+double surface_le_z_m(const SurfacePlan& plan, double y_m);
+
+/// The tables of types, by file.
+std::vector<AircraftType> regional_types();     ///< ATR 72, E190
+std::vector<AircraftType> narrow_body_types();  ///< A320, B737-800
+std::vector<AircraftType> wide_body_types();    ///< A350-900, A380, B777-300ER
 
 }  // namespace tarmac::scenes
