@@ -20,7 +20,7 @@ struct HangarOptions {
   int cabinets = 36;
   int loose_items = 14;
   // A floor is made level; the apron in front is part of the same plane.
-  PavingOptions paving{.crossfall_percent = 0.2, .undulation_mm = 6, .slab_tilt_mm = 1, .relief_rms_mm = 1};
+  PavingOptions paving{.crossfall_percent = 0, .undulation_mm = 6, .slab_tilt_mm = 1, .relief_rms_mm = 1};
 
   void visit(core::OptionVisitor& v) {
     v("width_m", width_m, "outside, along the door", {.at_least = 40, .at_most = 110});

@@ -132,7 +132,7 @@ void add_platform(MeshBuilder& b, const Platform& d, bool rail_low_y, bool rail_
   const double mid = (d.x0 + d.x1) / 2;
   for (const double x : {d.x0 + 0.06, mid, d.x1 - 0.06}) {
     for (const double y : {d.y0 + 0.06, d.y1 - 0.06})
-      add_box(b, {x - 0.05, y - 0.05, 0}, {x + 0.05, y + 0.05, d.z - 0.12});
+      add_box(b, {x - 0.05, y - 0.05, -0.03}, {x + 0.05, y + 0.05, d.z - 0.12});
   }
   for (const double y : {d.y0 + 0.06, d.y1 - 0.06}) {  // braces
     add_beam(b, {d.x0 + 0.06, y, 0.3}, {mid, y, d.z - 0.2}, 0.05, 0.05);
