@@ -122,8 +122,7 @@ void paint_stand(Painter& p, const StandPaint& s) {
   paint_lead_in_line(p, line, 0.3);
   p.use(paint_yellow_marking).layer(3);
   bar(-3, -s.nose_gear_m - 0.08, 3, -s.nose_gear_m + 0.08);
-  for (const double dy : {-3.3, -6.2})
-    bar(-1.5, -s.nose_gear_m + dy - 0.06, 1.5, -s.nose_gear_m + dy + 0.06);
+  for (const double dy : {-3.3, -6.2}) bar(-1.5, -s.nose_gear_m + dy - 0.06, 1.5, -s.nose_gear_m + dy + 0.06);
   p.use(paint_yellow_marking).layer(1);
   paint_number(p, s.number, f.world(1.2, -s.length_m - 16), 3, f.sign);
   paint_number(p, s.number, f.world(-0.9, -s.nose_gear_m + 1.2), 1.5, f.sign);

@@ -19,8 +19,7 @@ constexpr double belt_loader_half_m = 3.85, container_loader_half_m = 4.25;
 /// One turnaround being put up. Stand frame: x right of the aircraft, y forward from its nose.
 class Crew {
  public:
-  Crew(Props& props, const Turnaround& t, const core::RandomStream& random)
-      : props_(props), t_(t), random_(random) {}
+  Crew(Props& props, const Turnaround& t, const core::RandomStream& random) : props_(props), t_(t), random_(random) {}
 
   void put(const std::string& name, Label label, const Props::Build& build, double x, double y, double yaw) {
     props_.stand(name, label, build, t_.frame, x, y, yaw);
@@ -64,7 +63,9 @@ double leading_edge_m(const AircraftType& type, double y_m) {
   return type.wing.root_le_x_m + (y_m - type.wing.root_y_m) * std::tan(type.wing.le_sweep_deg * pi / 180);
 }
 
-bool is_wide(const AircraftType& type) { return type.length_m > 55; }
+bool is_wide(const AircraftType& type) {
+  return type.length_m > 55;
+}
 
 void Crew::chock(const LandingGear& gear, double x) {
   const int rows = std::max(1, gear.wheels / 2);
@@ -99,11 +100,13 @@ void Crew::hold(const AircraftType& type) {
     if (!comes(0.8)) continue;
     const int top_cm = static_cast<int>(std::lround(100 * top));
     if (wide) {
-      put("container_loader_" + std::to_string(top_cm), ground_equipment,
+      put(
+          "container_loader_" + std::to_string(top_cm), ground_equipment,
           [&](MeshBuilder& b) { add_container_loader(b, top); }, x, -door.x_m, pi);
       containers(loader_tail_m_ + 4, -door.x_m - 2, 4);
     } else {
-      put("belt_loader_" + std::to_string(top_cm), ground_equipment,
+      put(
+          "belt_loader_" + std::to_string(top_cm), ground_equipment,
           [&](MeshBuilder& b) { add_belt_loader(b, std::max(1.3, top)); }, x, -door.x_m, pi);
       if (-door.x_m < -type.length_m / 2) train(loader_tail_m_ + 3.2, -door.x_m - 1, 3);
     }
@@ -123,7 +126,8 @@ void Crew::containers(double x, double y, int dollies) {
   for (int k = 0; k < dollies; ++k) {
     if (!comes(0.7)) continue;
     const bool loaded = draw() < 0.6;
-    put(loaded ? "dolly_with_container" : "dolly", ground_equipment,
+    put(
+        loaded ? "dolly_with_container" : "dolly", ground_equipment,
         [&](MeshBuilder& b) { add_container_dolly(b, loaded); }, x + 0.12 * jitter(), y - 4.3 * k,
         quarter + 0.04 * jitter());
   }
@@ -154,11 +158,13 @@ void Crew::nose(const AircraftType& type) {
 void Crew::passengers(const AircraftType& type) {
   const Door& door = type.doors.front();
   const double skin = fuselage_half_width_m(type, door.x_m, type.floor_z_m), half = widest_half_m(type);
-  constexpr double stairs_front_m = 2.22, foot_m = -3.6, lowest_sill_m = 1.8;  // lower doors have steps of their own
-  const double stairs_x = -(skin + 0.15 + stairs_front_m);
-  if (const double sill = type.floor_z_m + door.sill_m; sill > lowest_sill_m) {
-    put("passenger_stairs_" + std::to_string(std::lround(100 * sill)), ground_equipment,
-        [&](MeshBuilder& b) { add_passenger_stairs(b, sill); }, stairs_x, -door.x_m, 0);
+  constexpr double foot_m = -3.6, lowest_sill_m = 1.8;  // lower doors have steps of their own
+  const double sill_m = type.floor_z_m + door.sill_m;
+  const double stairs_x = -(skin + 0.15 + passenger_stairs_front_m(std::max(sill_m, lowest_sill_m)));
+  if (sill_m > lowest_sill_m) {
+    put(
+        "passenger_stairs_" + std::to_string(std::lround(100 * sill_m)), ground_equipment,
+        [&](MeshBuilder& b) { add_passenger_stairs(b, sill_m); }, stairs_x, -door.x_m, 0);
   }
   const double bus_x = -(half + 13.5);
   const bool bus = comes(0.8);
@@ -169,16 +175,18 @@ void Crew::passengers(const AircraftType& type) {
     const double share = (k + 0.5 + 0.3 * jitter()) / people;
     const bool walks = k % 2 == 1;
     const PersonPosture posture{.gait_phase_rad = walks ? 0.6 : 0, .gait = walks ? 0.8 : 0};
-    props_.stand_mesh(walks ? "person_walking" : "person_standing", person, [&] { return make_person(posture); },
-                      t_.frame, foot_x - 0.6 - share * (way - 0.6), -door.x_m + 0.9 * jitter(),
-                      pi * (1 + 0.2 * jitter()));
+    props_.stand_mesh(
+        walks ? "person_walking" : "person_standing", person, [&] { return make_person(posture); }, t_.frame,
+        foot_x - 0.6 - share * (way - 0.6), -door.x_m + 0.9 * jitter(), pi * (1 + 0.2 * jitter()));
   }
   if (!comes(0.6)) return;
   const bool wide = is_wide(type);
   const double bar = wide ? 5.5 : 4.0, tractor = wide ? 9.5 : 6.0, gear = -type.nose_gear.x_m;
-  put(wide ? "towbar_wide" : "towbar", ground_equipment, [&](MeshBuilder& b) { add_towbar(b, wide); }, 0,
+  put(
+      wide ? "towbar_wide" : "towbar", ground_equipment, [&](MeshBuilder& b) { add_towbar(b, wide); }, 0,
       gear + 0.5 + bar / 2, quarter);
-  put(wide ? "pushback_tractor_wide" : "pushback_tractor", vehicle,
+  put(
+      wide ? "pushback_tractor_wide" : "pushback_tractor", vehicle,
       [&](MeshBuilder& b) { add_pushback_tractor(b, wide); }, 0, gear + 0.7 + bar + tractor / 2, -quarter);
 }
 

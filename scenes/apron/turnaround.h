@@ -1,5 +1,5 @@
-/// What stands around an aircraft on its stand: chocks, cones, loaders at the hold doors, trains of carts, ground power,
-/// fuel, catering; on a remote stand stairs, a bus, people and the pushback tractor too.
+/// What stands around an aircraft on its stand: chocks, cones, loaders at the hold doors, trains of carts, ground
+/// power, fuel, catering; on a remote stand stairs, a bus, people and the pushback tractor too.
 #pragma once
 
 #include <cstdint>

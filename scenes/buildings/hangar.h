@@ -11,7 +11,7 @@ struct HangarSpec {
   double eaves_m = 16, ridge_m = 19;  ///< the ridge runs along x
   double door_width_m = 40, door_height_m = 13.5;
   int door_leaves = 8;
-  bool open = false;         ///< leaves stacked at both sides of the opening, each on a rail of its own
+  bool open = false;    ///< leaves stacked at both sides of the opening, each on a rail of its own
   bool hollow = false;  ///< for a hangar that is seen from inside: no roof from add_hangar_shell, see add_hangar_roof
   double frame_pitch_m = 8;  ///< of columns and trusses
 };

@@ -44,12 +44,12 @@ void add_docks(Props& props, const CargoYardOptions& options, const CargoLayout&
     if (x < CargoLayout::fence_x_m - 3) {
       if (random.uniform(i, 0) < options.truck_share)
         props.stand("articulated_truck", Label::vehicle, add_articulated_truck, x + aside,
-                    CargoLayout::dock_y_m - bumper_m - 0.05, -quarter);
+                    CargoLayout::dock_y_m - bumper_m - 0.05 - kTruckTail_m, -quarter);
     } else if (x > CargoLayout::aisle_x_m + 5 && random.uniform(i, 0) < 0.6) {
       const bool loaded = random.uniform(i, 2) < 0.6;
-      props.stand(loaded ? "dolly_with_container" : "dolly", Label::ground_equipment,
-                  [&](MeshBuilder& b) { add_container_dolly(b, loaded); }, x + aside, CargoLayout::dock_y_m - 7.4,
-                  quarter);
+      props.stand(
+          loaded ? "dolly_with_container" : "dolly", Label::ground_equipment,
+          [&](MeshBuilder& b) { add_container_dolly(b, loaded); }, x + aside, CargoLayout::dock_y_m - 7.4, quarter);
     }
   }
 }
@@ -93,10 +93,11 @@ void add_trains(Props& props, const CargoYardOptions& options, std::uint64_t see
     const int dollies = 3 + static_cast<int>(3 * random.uniform(i, 0));
     for (int j = 0; j < dollies; ++j) {
       const bool loaded = random.uniform(i, static_cast<std::uint32_t>(10 + j)) < 0.7;
-      props.stand(loaded ? "dolly_with_container" : "dolly", Label::ground_equipment,
-                  [&](MeshBuilder& b) { add_container_dolly(b, loaded); },
-                  x + 0.15 * (random.uniform(i, static_cast<std::uint32_t>(30 + j)) - 0.5), front_y_m - dolly_m * (j + 1),
-                  quarter);
+      props.stand(
+          loaded ? "dolly_with_container" : "dolly", Label::ground_equipment,
+          [&](MeshBuilder& b) { add_container_dolly(b, loaded); },
+          x + 0.15 * (random.uniform(i, static_cast<std::uint32_t>(30 + j)) - 0.5), front_y_m - dolly_m * (j + 1),
+          quarter);
     }
   }
 }
@@ -115,19 +116,23 @@ void add_boundary(Assembly& a, Props& props, const CargoYardOptions& options, co
       props.stand("barrier", Label::other, add_barrier, x, CargoLayout::fence_y_m + 1.5, 0);
   }
   for (const double x : {-half + 10, half + 12})
-    props.found("lighting_mast", Label::mast, [](MeshBuilder& b) { add_lighting_mast(b, 25); }, x, 2.5, 0);
-  props.stand("container_loader_low", Label::ground_equipment,
-              [](MeshBuilder& b) { add_container_loader(b, 1.2); }, l.east_aisle_x_m + 12, 24, 1.2);
-  props.stand("pushback_tractor_wide", Label::vehicle, [](MeshBuilder& b) { add_pushback_tractor(b, true); },
-              l.east_aisle_x_m + 12, 38, quarter);
+    props.found(
+        "lighting_mast", Label::mast, [](MeshBuilder& b) { add_lighting_mast(b, 25); }, x, 2.5, 0);
+  props.stand(
+      "container_loader_low", Label::ground_equipment, [](MeshBuilder& b) { add_container_loader(b, 1.2); },
+      l.east_aisle_x_m + 12, 24, 1.2);
+  props.stand(
+      "pushback_tractor_wide", Label::vehicle, [](MeshBuilder& b) { add_pushback_tractor(b, true); },
+      l.east_aisle_x_m + 12, 38, quarter);
 }
 
 void add_freighter(Props& props, const CargoYardOptions& options, const Ground& ground, std::uint64_t seed) {
   if (options.freighter == "none") return;
   const AircraftType& type = aircraft_type(options.freighter);
   const StandFrame frame{{0, CargoLayout::nose_y_m}, 1};
-  props.put("aircraft_" + type.name, Label::aircraft, [&] { return make_aircraft(type); },
-            park(type, ground, 0, CargoLayout::nose_y_m, frame.heading_rad()));
+  props.put(
+      "aircraft_" + type.name, Label::aircraft, [&] { return make_aircraft(type); },
+      park(type, ground, 0, CargoLayout::nose_y_m, frame.heading_rad()));
   add_turnaround(props, type, {.frame = frame, .half_width_m = 22, .density = 1.3, .stand = 0},
                  core::RandomStream(seed, "scenes/cargo_yard/freighter"));
 }

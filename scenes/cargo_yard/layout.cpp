@@ -7,10 +7,7 @@ namespace tarmac::scenes {
 CargoLayout cargo_layout(const CargoYardOptions& options) {
   constexpr double beside_lane_m = 2.2, behind_tail_m = 30, without_freighter_m = -60;
   CargoLayout l;
-  l.shed = {.length_m = options.shed_length_m,
-            .depth_m = 40,
-            .height_m = options.shed_height_m,
-            .with_bumpers = true};
+  l.shed = {.length_m = options.shed_length_m, .depth_m = 40, .height_m = options.shed_height_m, .with_bumpers = true};
   l.east_aisle_x_m = options.shed_length_m / 2 - 4;
   l.rack_from_x_m = CargoLayout::aisle_x_m + CargoLayout::lane_half_m + beside_lane_m;
   l.rack_to_x_m = l.east_aisle_x_m - CargoLayout::lane_half_m - beside_lane_m;

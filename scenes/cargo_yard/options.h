@@ -21,7 +21,8 @@ struct CargoYardOptions {
   void visit(core::OptionVisitor& v) {
     v("shed_length_m", shed_length_m, "of the shed and its row of docks", {.at_least = 75, .at_most = 200});
     v("shed_height_m", shed_height_m, "of the shed", {.at_least = 8, .at_most = 20});
-    v("fill_share", fill_share, "probability that a place in the racks holds a container", {.at_least = 0, .at_most = 1});
+    v("fill_share", fill_share, "probability that a place in the racks holds a container",
+      {.at_least = 0, .at_most = 1});
     v("stacked_share", stacked_share, "of those, the share with another one on top", {.at_least = 0, .at_most = 1});
     v("dolly_trains", dolly_trains, "trains of dollies with containers, each with a tractor",
       {.at_least = 0, .at_most = 12});

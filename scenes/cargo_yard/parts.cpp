@@ -11,6 +11,7 @@ using Eigen::Vector3d;
 using enum MaterialId;
 
 void add_articulated_truck(MeshBuilder& b) {
+  b.at(place(-kTruckTail_m, 0, 0));
   for (const double y : {-1.02, 1.02}) {
     for (const double x : {1.8, 3.1, 4.4}) add_road_wheel(b, x, y, 0.5, 0.36);
     for (const double x : {11.2, 15.0}) add_road_wheel(b, x, y, 0.52, 0.34);
@@ -30,6 +31,7 @@ void add_articulated_truck(MeshBuilder& b) {
   add_patch(b, {16.43, -1.05, 1.75}, {16.43, 1.05, 1.75}, {16.21, 1.05, 2.85}, {16.21, -1.05, 2.85});
   b.use(gse_chassis);
   for (const double y : {-1.36, 1.24}) add_box(b, {15.9, y, 2.0}, {16.05, y + 0.12, 2.7});  // mirrors
+  b.at(core::SE3::Identity());
 }
 
 void add_roller_bed(MeshBuilder& b) {
@@ -37,7 +39,8 @@ void add_roller_bed(MeshBuilder& b) {
   for (const double x : {-1.0, 0.92}) {
     for (const double y : {-0.8, 0.72}) add_box(b, {x, y, 0}, {x + 0.08, y + 0.08, kRollerBedHeight_m - 0.1});
   }
-  for (const double y : {-0.85, 0.77}) add_box(b, {-1.05, y, kRollerBedHeight_m - 0.14}, {1.05, y + 0.08, kRollerBedHeight_m - 0.02});
+  for (const double y : {-0.85, 0.77})
+    add_box(b, {-1.05, y, kRollerBedHeight_m - 0.14}, {1.05, y + 0.08, kRollerBedHeight_m - 0.02});
   for (int k = 0; k < 6; ++k) {
     const double x = -0.9 + 0.36 * k;
     add_frustum(b, {x, -0.77, kRollerBedHeight_m - 0.05}, {x, 0.77, kRollerBedHeight_m - 0.05}, 0.05, 0.05, 10);
@@ -73,8 +76,14 @@ void add_barrier(MeshBuilder& b) {
   b.use(concrete_wall);
   std::vector<Ring> rings;
   for (const double x : {-1.5, 1.5}) {
-    rings.push_back({{x, -0.3, 0}, {x, 0.3, 0}, {x, 0.3, 0.1}, {x, 0.13, 0.4}, {x, 0.09, 0.85}, {x, -0.09, 0.85},
-                     {x, -0.13, 0.4}, {x, -0.3, 0.1}});
+    rings.push_back({{x, -0.3, 0},
+                     {x, 0.3, 0},
+                     {x, 0.3, 0.1},
+                     {x, 0.13, 0.4},
+                     {x, 0.09, 0.85},
+                     {x, -0.09, 0.85},
+                     {x, -0.13, 0.4},
+                     {x, -0.3, 0.1}});
   }
   add_loft(b, rings);
 }

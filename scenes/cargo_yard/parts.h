@@ -5,8 +5,9 @@
 
 namespace tarmac::scenes {
 
-/// Two axles with a cab and a trailer of 13.6 x 2.55 x 4.0; x forward, origin below the trailer's rear door.
+/// Two axles with a cab and a trailer of 13.6 x 2.55 x 4.0; x forward, the trailer's rear door at -kTruckTail_m.
 void add_articulated_truck(MeshBuilder& b);
+inline constexpr double kTruckTail_m = 8;
 /// A rack's cell: rollers on a frame 2.1 x 1.7 x 0.5 on which one container stands.
 void add_roller_bed(MeshBuilder& b);
 inline constexpr double kRollerBedHeight_m = 0.5;

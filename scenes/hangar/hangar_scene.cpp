@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/random.h"
 #include "scenes/aircraft/aircraft.h"
 #include "scenes/apron/marks.h"
 #include "scenes/apron/props.h"
@@ -11,8 +12,6 @@
 #include "scenes/hangar/workshop.h"
 #include "scenes/materials/materials.h"
 #include "scenes/registry.h"
-
-#include "core/random.h"
 
 namespace tarmac::scenes {
 
@@ -82,8 +81,8 @@ void add_loose_items(Props& props, const HangarOptions& options, const HangarLay
     } else if (kind < 0.8) {
       props.stand("oil_drum", Label::other, add_oil_drum, p.x(), p.y(), yaw);
     } else {
-      props.stand_mesh("person_standing", Label::person, [] { return make_person({}); }, StandFrame{}, p.x(), p.y(),
-                       yaw);
+      props.stand_mesh(
+          "person_standing", Label::person, [] { return make_person({}); }, StandFrame{}, p.x(), p.y(), yaw);
     }
   }
 }
@@ -97,11 +96,12 @@ void add_fixed_items(Assembly& a, Props& props, const HangarOptions& options, co
   const double front_x = options.width_m / 2 + 9;
   props.stand("towbarless_tractor", Label::vehicle, add_towbarless_tractor, front_x, -9, pi / 2);
   props.stand("ground_power_unit", Label::ground_equipment, add_ground_power_unit, -front_x, -7, 0.3);
-  props.stand("belt_loader", Label::ground_equipment, [](MeshBuilder& b) { add_belt_loader(b, 2.2); }, -front_x - 6,
-              -20, 1.2);
+  props.stand(
+      "belt_loader", Label::ground_equipment, [](MeshBuilder& b) { add_belt_loader(b, 2.2); }, -front_x - 6, -20, 1.2);
   props.stand("follow_me_car", Label::vehicle, add_follow_me_car, front_x + 6, -26, 2.0);
   for (const double x : {-options.width_m / 2 - 14, options.width_m / 2 + 14})
-    props.found("lighting_mast", Label::mast, [](MeshBuilder& b) { add_lighting_mast(b, 20); }, x, -4, 0);
+    props.found(
+        "lighting_mast", Label::mast, [](MeshBuilder& b) { add_lighting_mast(b, 20); }, x, -4, 0);
   const HangarSpec closed{.width_m = 44, .depth_m = 40};
   const double x = options.width_m / 2 + 20 + closed.width_m / 2;
   if (x + closed.width_m / 2 > HangarLayout::apron_half_m + 20) return;
@@ -157,8 +157,8 @@ Scene make_hangar_scene(const HangarOptions& options, const HangarLayout& l, std
       props.stand("chock", Label::ground_equipment, add_chock, 0,
                   l.nose_y_m - type.nose_gear.x_m + side * (0.8 * type.nose_gear.wheel_radius_m + 0.1), pi / 2);
     if (options.with_docking)
-      props.found("docking", Label::ground_equipment, [&](MeshBuilder& b) { add_docking(b, type); }, 0, l.nose_y_m,
-                  pi / 2);
+      props.found(
+          "docking", Label::ground_equipment, [&](MeshBuilder& b) { add_docking(b, type); }, 0, l.nose_y_m, pi / 2);
   }
   add_cabinets(props, options, l, seed);
   add_loose_items(props, options, l, seed);

@@ -37,17 +37,20 @@ HangarLayout hangar_layout(const HangarOptions& options) {
   const AircraftType& type = aircraft_type(options.aircraft);
   const double span_needed = type.span_m / 2 + lane_half_m, depth_needed = tail_in_m + type.length_m + before_nose_m;
   if (l.lane_x_m < span_needed)
-    throw InputError(fmt::format("aircraft: a lane beside the wing tips of {} lies at {:.1f} m from the middle, and the "
-                                 "hangar leaves {:.1f} m: make width_m and door_width_m {:.0f} m larger",
-                                 type.name, span_needed, l.lane_x_m, 2 * (span_needed - l.lane_x_m) + 1));
+    throw InputError(
+        fmt::format("aircraft: a lane beside the wing tips of {} lies at {:.1f} m from the middle, and the "
+                    "hangar leaves {:.1f} m: make width_m and door_width_m {:.0f} m larger",
+                    type.name, span_needed, l.lane_x_m, 2 * (span_needed - l.lane_x_m) + 1));
   if (l.lane_back_y_m - lane_half_m < depth_needed)
-    throw InputError(fmt::format("aircraft: {} needs {:.1f} m before the lane at the back, and there are {:.1f} m: make "
-                                 "depth_m larger",
-                                 type.name, depth_needed, l.lane_back_y_m - lane_half_m));
+    throw InputError(
+        fmt::format("aircraft: {} needs {:.1f} m before the lane at the back, and there are {:.1f} m: make "
+                    "depth_m larger",
+                    type.name, depth_needed, l.lane_back_y_m - lane_half_m));
   if (type.height_max_m + fin_gap_m > options.door_height_m)
-    throw InputError(fmt::format("aircraft: the fin of {} is {:.1f} m high and door_height_m is {:.1f} m: make the door "
-                                 "higher",
-                                 type.name, type.height_max_m, options.door_height_m));
+    throw InputError(
+        fmt::format("aircraft: the fin of {} is {:.1f} m high and door_height_m is {:.1f} m: make the door "
+                    "higher",
+                    type.name, type.height_max_m, options.door_height_m));
   l.nose_y_m = l.lane_back_y_m - lane_half_m - before_nose_m;
   return l;
 }

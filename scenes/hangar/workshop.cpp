@@ -157,7 +157,8 @@ void add_steps(MeshBuilder& b, double x_m, double y0, double y1, double height_m
   const double rise = height_m / steps, run = 0.24;
   b.use(galvanised_steel);
   for (int k = 1; k < steps; ++k)
-    add_box(b, {x_m - k * run, y0 + 0.05, height_m - k * rise - 0.03}, {x_m - (k - 1) * run, y1 - 0.05, height_m - k * rise});
+    add_box(b, {x_m - k * run, y0 + 0.05, height_m - k * rise - 0.03},
+            {x_m - (k - 1) * run, y1 - 0.05, height_m - k * rise});
   b.use(gse_paint_yellow);
   const double foot = x_m - (steps - 1) * run;
   for (const double y : {y0 + 0.03, y1 - 0.03}) {
@@ -172,8 +173,8 @@ double widest_m(const AircraftType& type, double from_x, double to_x, double fro
   double widest = 0;
   for (int i = 0; i <= 8; ++i) {
     for (int j = 0; j <= 8; ++j)
-      widest = std::max(widest, fuselage_half_width_m(type, from_x + (to_x - from_x) * i / 8,
-                                                      from_z + (to_z - from_z) * j / 8));
+      widest = std::max(
+          widest, fuselage_half_width_m(type, from_x + (to_x - from_x) * i / 8, from_z + (to_z - from_z) * j / 8));
   }
   return widest;
 }

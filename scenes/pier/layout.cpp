@@ -39,17 +39,16 @@ PierLayout pier_layout(const PierOptions& options) {
     needed += code_of(k) == 'E' ? options.pitch_e_m : options.pitch_c_m;
   }
   if (options.pier_length_m > 0 && options.pier_length_m < needed)
-    throw core::InputError(
-        fmt::format("pier_length_m: {:.1f} is too short: its {} stands and the road before them need {:.1f} m; make the "
-                    "pier longer, or give it fewer stands",
-                    options.pier_length_m, options.stands_per_side, needed));
+    throw core::InputError(fmt::format(
+        "pier_length_m: {:.1f} is too short: its {} stands and the road before them need {:.1f} m; make the "
+        "pier longer, or give it fewer stands",
+        options.pier_length_m, options.stands_per_side, needed));
   const double length = bay_m * std::ceil(std::max(options.pier_length_m, needed) / bay_m - 1e-9);
   layout.west_m = -length / 2;
   layout.east_m = length / 2;
   layout.stand_length_m = wide ? longest_e_m : longest_c_m;
   layout.tail_road_m = PierLayout::nose_m + layout.stand_length_m + behind_tail_m;
-  layout.taxilane_m =
-      layout.tail_road_m + PierLayout::lane_width_m + (wide ? taxilane_clear_e_m : taxilane_clear_c_m);
+  layout.taxilane_m = layout.tail_road_m + PierLayout::lane_width_m + (wide ? taxilane_clear_e_m : taxilane_clear_c_m);
   layout.edge_m = layout.taxilane_m + (wide ? edge_e_m : edge_c_m);
   layout.cross_road_x_m = layout.west_m + west_gap_m / 2 + 2;
   layout.end_road_x_m = layout.east_m + 10;
@@ -59,8 +58,7 @@ PierLayout pier_layout(const PierOptions& options) {
     for (int k = 0; k < options.stands_per_side; ++k) {
       const double half = (code_of(k) == 'E' ? options.pitch_e_m : options.pitch_c_m) / 2;
       x += half;
-      layout.stands.push_back({code_of(k), x, half, side,
-                               StandFrame{{x, layout.y(side, PierLayout::nose_m)}, -side},
+      layout.stands.push_back({code_of(k), x, half, side, StandFrame{{x, layout.y(side, PierLayout::nose_m)}, -side},
                                (side < 0 ? 10 : 30) + k + 1});
       x += half;
     }
@@ -84,7 +82,8 @@ std::vector<std::vector<Vector2d>> pier_lanes(const PierOptions& options) {
         lanes.push_back({{x + d, l.y(side, PierLayout::head_road_m)}, {x + d, l.y(side, l.tail_road_m)}});
     }
   }
-  lanes.push_back({{l.end_road_x_m, l.y(-1, PierLayout::head_road_m)}, {l.end_road_x_m, l.y(1, PierLayout::head_road_m)}});
+  lanes.push_back(
+      {{l.end_road_x_m, l.y(-1, PierLayout::head_road_m)}, {l.end_road_x_m, l.y(1, PierLayout::head_road_m)}});
   for (const PierStand& stand : l.stands) {
     const double x = stand.centre_x_m + stand.half_width_m;
     lanes.push_back({{x, l.y(stand.side, PierLayout::head_road_m)}, {x, l.y(stand.side, l.tail_road_m)}});

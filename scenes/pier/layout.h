@@ -22,12 +22,12 @@ struct PierLayout {
   static constexpr double nose_m = 16.5, rotunda_m = 15.5, head_road_m = 6.25, lane_width_m = 4.5;
   static constexpr double boarding_floor_m = 5.0;
 
-  double west_m = 0, east_m = 0;          ///< ends of the pier
-  double half_width_m = 15;               ///< façades at y = +- this
-  double stand_length_m = 40;             ///< of the longest code
+  double west_m = 0, east_m = 0;                       ///< ends of the pier
+  double half_width_m = 15;                            ///< façades at y = +- this
+  double stand_length_m = 40;                          ///< of the longest code
   double tail_road_m = 0, taxilane_m = 0, edge_m = 0;  ///< centre lines; end of the pavement
-  double cross_road_x_m = 0;              ///< along the hall
-  double end_road_x_m = 0;                ///< around the pier's head
+  double cross_road_x_m = 0;                           ///< along the hall
+  double end_road_x_m = 0;                             ///< around the pier's head
   std::vector<PierStand> stands;
 
   /// World y of what is `distance_m` from the façade on a side.

@@ -27,8 +27,10 @@ struct PierOptions {
     v("pitch_c_m", pitch_c_m, "width of a stand for code C", {.at_least = 40.5, .at_most = 60});
     v("pitch_e_m", pitch_e_m, "width of a stand for code E", {.at_least = 72.5, .at_most = 100});
     v("pier_width_m", pier_width_m, "from façade to façade", {.at_least = 25, .at_most = 45});
-    v("pier_length_m", pier_length_m, "from the hall to the pier's head, rounded up to bays of 7.5 m; 0: as the stands "
-      "need", {.at_least = 0, .at_most = 900});
+    v("pier_length_m", pier_length_m,
+      "from the hall to the pier's head, rounded up to bays of 7.5 m; 0: as the stands "
+      "need",
+      {.at_least = 0, .at_most = 900});
     v("occupied_share", occupied_share, "probability that an aircraft is on a stand", {.at_least = 0, .at_most = 1});
     v("equipment_density", equipment_density,
       "how much stands around the aircraft: 0 chocks alone, 1 a usual turnaround, 2 all there is room for",

@@ -111,12 +111,11 @@ void add_stand(Assembly& a, Props& props, const PierOptions& options, const Pier
   const Vector2d nose = occupied ? stand.frame.nose_m : stand.frame.world(-2, 0);
   const core::SE3 T_world_aircraft = park(type, ground, nose.x(), nose.y(), stand.frame.heading_rad());
   a.put(a.mesh(make_jet_bridge(site, type, T_world_aircraft, ground)), Label::jet_bridge);
-  const Turnaround turnaround{.frame = stand.frame,
-                              .half_width_m = stand.half_width_m,
-                              .density = options.equipment_density,
-                              .stand = index};
+  const Turnaround turnaround{
+      .frame = stand.frame, .half_width_m = stand.half_width_m, .density = options.equipment_density, .stand = index};
   if (!occupied) return add_empty_stand(props, turnaround, crew);
-  props.put("aircraft_" + type.name, Label::aircraft, [&] { return make_aircraft(type, 0); }, T_world_aircraft);
+  props.put(
+      "aircraft_" + type.name, Label::aircraft, [&] { return make_aircraft(type, 0); }, T_world_aircraft);
   add_turnaround(props, type, turnaround, crew);
 }
 
@@ -124,8 +123,9 @@ void add_masts(Props& props, const PierLayout& l) {
   constexpr double height_m = 25, ahead_of_nose_m = 3.2, from_edge_m = 7;
   for (const PierStand& stand : l.stands) {
     const Vector2d p = stand.frame.world(stand.half_width_m - from_edge_m, ahead_of_nose_m);
-    props.found("lighting_mast", Label::mast, [&](MeshBuilder& b) { add_lighting_mast(b, height_m); }, p.x(), p.y(),
-                stand.side < 0 ? 0 : pi);
+    props.found(
+        "lighting_mast", Label::mast, [&](MeshBuilder& b) { add_lighting_mast(b, height_m); }, p.x(), p.y(),
+        stand.side < 0 ? 0 : pi);
   }
 }
 
@@ -178,8 +178,7 @@ Scene make_pier(const PierOptions& options, const PierLayout& l, std::uint64_t s
   a.put(a.mesh(paint(options, l, slabs)), Label::marking);
   add_buildings(a, options, l, *ground);
   Props props(a);
-  for (std::size_t k = 0; k < l.stands.size(); ++k)
-    add_stand(a, props, options, l, l.stands[k], k, *ground, seed);
+  for (std::size_t k = 0; k < l.stands.size(); ++k) add_stand(a, props, options, l, l.stands[k], k, *ground, seed);
   add_masts(props, l);
   return scene;
 }

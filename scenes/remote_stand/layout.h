@@ -18,11 +18,11 @@ struct RemoteStand {
 struct RemoteLayout {
   static constexpr double lane_width_m = 4.5, head_road_y_m = 14;
   std::vector<RemoteStand> stands;
-  double west_m = 0, east_m = 0;                           ///< ends of the row
-  double stand_length_m = 40;                              ///< of the longest type
-  double tail_road_y_m = 0, taxilane_y_m = 0;              ///< centre lines
-  double cross_road_west_x_m = 0, cross_road_east_x_m = 0; ///< roads that join head and tail
-  bool wide = false;                                       ///< a type of code E or F is among them
+  double west_m = 0, east_m = 0;                            ///< ends of the row
+  double stand_length_m = 40;                               ///< of the longest type
+  double tail_road_y_m = 0, taxilane_y_m = 0;               ///< centre lines
+  double cross_road_west_x_m = 0, cross_road_east_x_m = 0;  ///< roads that join head and tail
+  bool wide = false;                                        ///< a type of code E or F is among them
 };
 
 /// Throws core::InputError for a type that there is not, no type at all or more than ten.

@@ -35,8 +35,9 @@ void add_stand(Props& props, const RemoteStandOptions& options, const RemoteStan
   Turnaround there = turnaround;
   there.frame.nose_m = stand.frame.world(beside, -short_of_line);
   const AircraftType& type = *stand.type;
-  props.put("aircraft_" + type.name, Label::aircraft, [&] { return make_aircraft(type, 0); },
-            park(type, ground, there.frame.nose_m.x(), there.frame.nose_m.y(), stand.frame.heading_rad()));
+  props.put(
+      "aircraft_" + type.name, Label::aircraft, [&] { return make_aircraft(type, 0); },
+      park(type, ground, there.frame.nose_m.x(), there.frame.nose_m.y(), stand.frame.heading_rad()));
   add_turnaround(props, type, there, crew);
 }
 
@@ -44,7 +45,8 @@ void add_masts(Props& props, const RemoteLayout& l) {
   constexpr double height_m = 30, from_edge_m = 7, ahead_of_nose_m = 4;
   for (const RemoteStand& stand : l.stands) {
     const Vector2d p = stand.frame.world(stand.half_width_m - from_edge_m, ahead_of_nose_m);
-    props.found("lighting_mast", Label::mast, [&](MeshBuilder& b) { add_lighting_mast(b, height_m); }, p.x(), p.y(), 0);
+    props.found(
+        "lighting_mast", Label::mast, [&](MeshBuilder& b) { add_lighting_mast(b, height_m); }, p.x(), p.y(), 0);
   }
 }
 
