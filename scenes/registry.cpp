@@ -2,6 +2,11 @@
 
 namespace tarmac::scenes {
 
+const std::vector<std::string>& common_scene_keys() {
+  static const std::vector<std::string> keys{"kind"};
+  return keys;
+}
+
 const SceneEntry& scene_of(const core::ConfigNode& node) {
   const core::ConfigNode kind = node.child("kind");
   const std::string name = kind.scalar("kind");
@@ -15,6 +20,18 @@ const SceneEntry& scene_of(const core::ConfigNode& node) {
   if (const std::string meant = core::did_you_mean(name, names); !meant.empty())
     message += "; did you mean " + meant + "?";
   kind.fail(message);
+}
+
+Scene make_scene(const core::ConfigNode& node, std::uint64_t seed) {
+  return scene_of(node).make(node, seed);
+}
+
+std::shared_ptr<const Ground> make_ground(const core::ConfigNode& node, std::uint64_t seed) {
+  return scene_of(node).ground(node, seed);
+}
+
+std::string resolve_scene(const core::ConfigNode& node) {
+  return scene_of(node).resolve(node);
 }
 
 }  // namespace tarmac::scenes

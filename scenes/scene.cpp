@@ -32,6 +32,16 @@ const char* name_of(Label label) {
       return "person";
     case Label::other:
       return "other";
+    case Label::own_body:
+      return "own_body";
+    case Label::sign:
+      return "sign";
+    case Label::light:
+      return "light";
+    case Label::tree:
+      return "tree";
+    case Label::terrain:
+      return "terrain";
   }
   return "unknown";
 }

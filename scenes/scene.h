@@ -18,20 +18,37 @@ namespace tarmac::scenes {
 /// Reflectance at 865-905 nm: rho_eq(theta) = diffuse * OrenNayar + glossy lobe + retro lobe (docs/sources in README).
 struct Material {
   std::string name;
-  double diffuse = 0.3;                 ///< hemispherical reflectance
-  double oren_nayar_sigma_rad = 0;      ///< 0 = Lambert
-  double specular_f0 = 0;               ///< Fresnel reflectance at normal incidence of the glossy lobe
-  double ggx_alpha = 0;                 ///< 0 = no glossy lobe
-  double retro = 0;                     ///< rho_eq of the retro-reflecting lobe at normal incidence
-  double transmission = 0;              ///< share of energy passing (glass)
-  bool has_relief = false;              ///< pavement: Scene::relief applies
+  double diffuse = 0.3;                     ///< hemispherical reflectance
+  double oren_nayar_sigma_rad = 0;          ///< 0 = Lambert
+  double specular_f0 = 0;                   ///< Fresnel reflectance at normal incidence of the glossy lobe
+  double ggx_alpha = 0;                     ///< 0 = no glossy lobe
+  double retro = 0;                         ///< rho_eq of the retro-reflecting lobe at normal incidence
+  double transmission = 0;                  ///< share of energy passing (glass)
+  bool has_relief = false;                  ///< pavement: Scene::relief applies
   Eigen::Vector3f color{0.6f, 0.6f, 0.6f};  ///< for pictures only, sRGB 0..1
 };
 
 /// What a surface belongs to. Values are written to files: never renumber.
 enum class Label : std::uint8_t {
-  none = 0, pavement = 1, marking = 2, building = 3, glass = 4, jet_bridge = 5, aircraft = 6, mast = 7,
-  ground_equipment = 8, cone = 9, vehicle = 10, vegetation = 11, person = 12, other = 13,
+  none = 0,
+  pavement = 1,
+  marking = 2,
+  building = 3,
+  glass = 4,
+  jet_bridge = 5,
+  aircraft = 6,
+  mast = 7,
+  ground_equipment = 8,
+  cone = 9,
+  vehicle = 10,
+  vegetation = 11,
+  person = 12,
+  other = 13,
+  own_body = 14,
+  sign = 15,
+  light = 16,
+  tree = 17,
+  terrain = 18,
 };
 const char* name_of(Label label);
 
@@ -46,7 +63,7 @@ struct Mesh {
 struct Instance {
   std::uint32_t mesh = 0;
   Label label = Label::other;
-  std::int32_t actor = -1;                        ///< index into Scene::actors; -1 = static
+  std::int32_t actor = -1;                          ///< index into Scene::actors; -1 = static
   core::SE3 T_parent_mesh = core::SE3::Identity();  ///< parent = world, or the actor's frame
 };
 
@@ -55,8 +72,8 @@ class ActorMotion {
  public:
   virtual ~ActorMotion() = default;
   virtual core::SE3 T_world_actor(core::Time t) const = 0;
-  /// Upper bound of the acceleration of any point within `radius_m` of the actor's origin over [t0, t1] [m/s^2], v*omega
-  /// included; tells how many motion steps a sweep needs. 0 = it stands still.
+  /// Upper bound of the acceleration of any point within `radius_m` of the actor's origin over [t0, t1] [m/s^2],
+  /// v*omega included; tells how many motion steps a sweep needs. 0 = it stands still.
   virtual double acceleration_bound_m_s2(core::Time t0, core::Time t1, double radius_m) const = 0;
 };
 
@@ -99,7 +116,7 @@ struct Scene {
   std::vector<Instance> instances;
   std::vector<Actor> actors;
   std::shared_ptr<const Ground> ground;
-  std::shared_ptr<const Relief> relief;  ///< nullptr = none
+  std::shared_ptr<const Relief> relief;                          ///< nullptr = none
   Eigen::Vector2d interest_min{-60, -40}, interest_max{60, 60};  ///< what a top view should show
 
   std::size_t triangle_count() const;  ///< after instancing

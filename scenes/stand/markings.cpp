@@ -3,7 +3,7 @@
 #include <string>
 
 #include "scenes/stand/layout.h"
-#include "scenes/stand/pavement.h"
+#include "scenes/stand/parts.h"
 
 namespace tarmac::scenes {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/options.h"
+#include "scenes/paving/paving.h"
 #include "scenes/stand/layout.h"
 
 namespace tarmac::scenes {
@@ -43,6 +44,21 @@ struct StandOptions {
     v("with_tug", with_tug, "the baggage tractor that drives along the tail-of-stand road");
     v("tug_speed_m_s", tug_speed_m_s, "its cruising speed", {.at_least = 0.5, .at_most = 8});
     v("tug_start_s", tug_start_s, "when it has half its cruising speed", {.at_least = 0, .at_most = 600});
+  }
+
+  PavingSpec paving() const {
+    PavingSpec spec;
+    spec.low_m = {layout::apron_west_m, apron_south_m};
+    spec.high_m = {layout::apron_east_m, layout::apron_north_m};
+    spec.slab_size_m = slab_size_m;
+    spec.crossfall_percent = crossfall_percent;
+    spec.crossfall_zero_y_m = layout::corridor_north_y_m;
+    spec.undulation_mm = undulation_mm;
+    spec.slab_tilt_mm = slab_tilt_mm;
+    spec.relief_rms_mm = relief_rms_mm;
+    spec.joint_depth_mm = joint_depth_mm;
+    spec.stream = "scenes/stand";
+    return spec;
   }
 };
 

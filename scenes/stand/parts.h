@@ -2,9 +2,13 @@
 #pragma once
 
 #include "scenes/aircraft/aircraft.h"
+#include "scenes/paving/pavement.h"
 #include "scenes/primitives/mesh_builder.h"
 
 namespace tarmac::scenes {
+
+/// Lead-in lines, stop bars, stand numbers, safety lines and service roads.
+Mesh make_markings(const SlabSurface& slabs);
 
 /// Walls, columns, slabs and roofs, and apart from them the panes (label glass).
 struct Terminal {

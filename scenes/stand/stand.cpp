@@ -4,10 +4,10 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "scenes/assembly.h"
 #include "scenes/equipment/equipment.h"
 #include "scenes/stand/layout.h"
 #include "scenes/stand/parts.h"
-#include "scenes/stand/pavement.h"
 #include "scenes/stand/tug.h"
 
 namespace tarmac::scenes {
@@ -18,44 +18,6 @@ namespace l = layout;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-/// Adds meshes once and instances of them, static ones or an actor's.
-class Assembly {
- public:
-  Assembly(Scene& scene, const Ground& ground) : scene_(&scene), ground_(&ground) {}
-
-  std::uint32_t mesh(Mesh mesh) {
-    scene_->meshes.push_back(std::move(mesh));
-    return static_cast<std::uint32_t>(scene_->meshes.size() - 1);
-  }
-  template <class Build>
-  std::uint32_t mesh(const char* name, const Build& build) {
-    MeshBuilder b(name);
-    build(b);
-    return mesh(std::move(b).build());
-  }
-  void put(std::uint32_t mesh, Label label, const core::SE3& T_parent_mesh = core::SE3::Identity(), int actor = -1) {
-    scene_->instances.push_back({mesh, label, actor, T_parent_mesh});
-  }
-  /// On the ground at x, y, upright along the ground's normal.
-  void stand(std::uint32_t mesh, Label label, double x_m, double y_m, double yaw_rad) {
-    Eigen::Vector2d gradient;
-    const double z = ground_->height_m(x_m, y_m, &gradient);
-    const Vector3d up = Vector3d(-gradient.x(), -gradient.y(), 1).normalized();
-    core::SE3 T = place(x_m, y_m, z);
-    T.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), up).toRotationMatrix() *
-                 Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
-    put(mesh, label, T);
-  }
-  /// On the ground at x, y, vertical.
-  void found(std::uint32_t mesh, Label label, double x_m, double y_m, double yaw_rad) {
-    put(mesh, label, place(x_m, y_m, ground_->height_m(x_m, y_m), yaw_rad));
-  }
-
- private:
-  Scene* scene_;
-  const Ground* ground_;
-};
 
 void add_buildings(Assembly& a, const Ground& ground, bool with_surroundings) {
   Terminal terminal = make_terminal(ground.height_m(0, l::facade_y_m));
@@ -152,7 +114,7 @@ void add_chocks(Assembly& a, const AircraftType& type) {
   }
 }
 
-void add_tug(Assembly& a, Scene& scene, const StandOptions& options, const std::shared_ptr<const StandGround>& ground,
+void add_tug(Assembly& a, Scene& scene, const StandOptions& options, const std::shared_ptr<const WavyGround>& ground,
              std::uint64_t seed) {
   const core::RandomStream random(seed, "scenes/stand/tug");
   const LaneMotion::Lane lane{.from_x_m = l::tug_from_x_m,
@@ -167,9 +129,7 @@ void add_tug(Assembly& a, Scene& scene, const StandOptions& options, const std::
 }
 
 StandOptions read(const core::ConfigNode& node) {
-  StandOptions options;
-  node.read(options, {"kind"});
-  return options;
+  return read_scene_options<StandOptions>(node);
 }
 
 }  // namespace
@@ -180,12 +140,12 @@ Scene make_stand(const StandOptions& options, std::uint64_t seed) {
   scene.materials = materials();
   scene.interest_min = {-75, -45};
   scene.interest_max = {75, 60};
-  const auto ground = std::make_shared<StandGround>(options, seed);
+  const auto ground = std::make_shared<WavyGround>(options.paving(), seed);
   scene.ground = ground;
-  scene.relief = std::make_shared<StandRelief>(options, seed);
+  scene.relief = std::make_shared<SlabRelief>(options.paving(), seed);
 
   Assembly a(scene, *ground);
-  const SlabSurface slabs(options, seed, *ground);
+  const SlabSurface slabs(options.paving(), seed, *ground);
   a.put(a.mesh(make_pavement(slabs)), Label::pavement);
   a.put(a.mesh(make_markings(slabs)), Label::marking);
   a.put(a.mesh(make_grass(*ground, slabs.grid())), Label::vegetation);
@@ -213,7 +173,7 @@ const SceneEntry stand{
     .summary = "an airside stand: A320 nosed in, jet bridge, terminal, equipment, a tug that drives by",
     .make = [](const core::ConfigNode& node, std::uint64_t seed) { return make_stand(read(node), seed); },
     .ground = [](const core::ConfigNode& node, std::uint64_t seed) -> std::shared_ptr<const Ground> {
-      return std::make_shared<StandGround>(read(node), seed);
+      return std::make_shared<WavyGround>(read(node).paving(), seed);
     },
     .describe = [] { return core::describe_options<StandOptions>(); },
     .resolve = [](const core::ConfigNode& node) { return "  kind: stand\n" + core::write_options(read(node), 2); },

@@ -30,7 +30,7 @@ double nearest_to_zero(double low, double high) {
 
 }  // namespace
 
-LaneMotion::LaneMotion(const Lane& lane, std::shared_ptr<const StandGround> ground)
+LaneMotion::LaneMotion(const Lane& lane, std::shared_ptr<const WavyGround> ground)
     : lane_(lane),
       direction_(lane.to_x_m > lane.from_x_m ? 1 : -1),
       stop_s_(lane.start_s + std::abs(lane.to_x_m - lane.from_x_m) / lane.speed_m_s),

@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "scenes/paving/paving.h"
 #include "scenes/primitives/mesh_builder.h"
-#include "scenes/stand/ground.h"
 
 namespace tarmac::scenes {
 
@@ -20,7 +20,7 @@ class LaneMotion final : public ActorMotion {
     double wander_m = 0.25, wander_length_m = 45, phase_rad = 0;
     double speed_m_s = 4, start_s = 6, ramp_s = 1.5;  ///< ramp_s is tau
   };
-  LaneMotion(const Lane& lane, std::shared_ptr<const StandGround> ground);
+  LaneMotion(const Lane& lane, std::shared_ptr<const WavyGround> ground);
   core::SE3 T_world_actor(core::Time t) const override;
   double acceleration_bound_m_s2(core::Time t0, core::Time t1, double radius_m) const override;
   /// When the lane's other end is reached (half the speed is left).
@@ -29,7 +29,7 @@ class LaneMotion final : public ActorMotion {
  private:
   Lane lane_;
   double direction_, stop_s_, wave_per_m_;
-  std::shared_ptr<const StandGround> ground_;
+  std::shared_ptr<const WavyGround> ground_;
 };
 
 Mesh make_tug();

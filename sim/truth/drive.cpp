@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "scenes/paths/planar_path.h"
+#include "scenes/paths/speed_profile.h"
 #include "sim/truth/drive_options.h"
-#include "sim/truth/planar_path.h"
 #include "sim/truth/road.h"
-#include "sim/truth/speed_profile.h"
 #include "sim/truth/suspension.h"
 #include "sim/truth/vibration.h"
 
@@ -236,7 +236,7 @@ Course make_course(const ConfigNode& node, const DriveOptions& options, double e
   PlanarPath path(options.start, options.path, wander, path_problems);
   for (const auto& problem : path_problems) fail_at_item(node, "path", problem.piece, problem.message);
   std::vector<SpeedProfile::Problem> speed_problems;
-  SpeedProfile speed(options, path.length_m(), ripple.integral(), speed_problems);
+  SpeedProfile speed(options.speed_plan(), path.length_m(), ripple.integral(), speed_problems);
   for (const auto& problem : speed_problems) {
     if (problem.event == options.speed.size()) {
       node.fail_at("stop_peak_m_s2", "the stop at the end of the path: " + problem.message);

@@ -147,7 +147,7 @@ GroundTruth load_ground_truth(const std::filesystem::path& truth_folder) {
   truth.faults = faults_from_json(read_file(faults), faults.string());
   const ConfigNode scene = truth.config.child("scene");
   truth.motion = make_motion(truth.config.child("motion"), duration_from_s(basics.duration_s),
-                             scenes::scene_of(scene).ground(scene, truth.seed), truth.seed);
+                             scenes::make_ground(scene, truth.seed), truth.seed);
   check_rebuilt(truth);
   return truth;
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/truth/drive_options.h"
-#include "sim/truth/jet.h"
+#include "sim/truth/paths.h"
 
 namespace tarmac::sim::truth {
 

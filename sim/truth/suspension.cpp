@@ -4,9 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/truth/quadrature.h"
+#include "scenes/paths/quadrature.h"
 
 namespace tarmac::sim::truth {
+
+using scenes::Gauss3;
 
 namespace {
 

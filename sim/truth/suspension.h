@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "sim/truth/jet.h"
+#include "sim/truth/paths.h"
 
 namespace tarmac::sim::truth {
 

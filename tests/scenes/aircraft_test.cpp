@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/stand/ground.h"
 #include "scenes/stand/layout.h"
+#include "scenes/stand/options.h"
 #include "scenes/stand/parts.h"
 #include "tests/scenes/support.h"
 
@@ -103,7 +103,7 @@ TEST(StandAircraft, EveryWheelTouchesItsSlabWithinTwoCentimetres) {
   const AircraftType& type = airbus_a320();
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Scene scene = make_scene(tests::scene_node(), seed);
-    const SlabSurface slabs(StandOptions{}, seed, *scene.ground);
+    const SlabSurface slabs(StandOptions{}.paving(), seed, *scene.ground);
     for (const Instance& instance : scene.instances) {
       if (instance.label != Label::aircraft) continue;
       std::vector<Vector3d> wheels;
@@ -123,7 +123,7 @@ TEST(StandAircraft, EveryWheelTouchesItsSlabWithinTwoCentimetres) {
 
 TEST(StandEquipment, NothingFloatsOrSinks) {
   const Scene& scene = tests::default_stand();
-  const SlabSurface slabs(StandOptions{}, 1, *scene.ground);
+  const SlabSurface slabs(StandOptions{}.paving(), 1, *scene.ground);
   int tested = 0;
   for (const Instance& instance : scene.instances) {
     if (instance.label != Label::ground_equipment && instance.label != Label::vehicle && instance.label != Label::cone)

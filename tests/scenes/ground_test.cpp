@@ -1,9 +1,9 @@
-#include "scenes/stand/ground.h"
-
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "scenes/paving/paving.h"
 #include "scenes/stand/layout.h"
+#include "scenes/stand/options.h"
 #include "tests/scenes/support.h"
 #include "tests/support/numeric.h"
 
@@ -18,8 +18,8 @@ Vector2d somewhere(const core::RandomStream& random, std::uint64_t k) {
   return {300 * random.uniform(k, 0) - 150, 160 * random.uniform(k, 1) - 105};
 }
 
-TEST(StandGround, GradientAndHessianMatchCentralDifferences) {
-  const StandGround ground(StandOptions{}, 5);
+TEST(WavyGround, GradientAndHessianMatchCentralDifferences) {
+  const WavyGround ground(StandOptions{}.paving(), 5);
   const core::RandomStream random(7, "test/ground");
   for (std::uint64_t k = 0; k < 200; ++k) {
     const Vector2d p = somewhere(random, k);
@@ -39,17 +39,17 @@ TEST(StandGround, GradientAndHessianMatchCentralDifferences) {
   }
 }
 
-TEST(StandGround, FallsAwayFromTheTerminalByTheCrossfall) {
+TEST(WavyGround, FallsAwayFromTheTerminalByTheCrossfall) {
   StandOptions options;
   options.crossfall_percent = 0.9;
   options.undulation_mm = 0;
-  const StandGround ground(options, 1);
+  const WavyGround ground(options.paving(), 1);
   EXPECT_NEAR(ground.height_m(3, 10) - ground.height_m(3, -90), 0.9, 1e-12);
   EXPECT_EQ(ground.height_m(3, 10), ground.height_m(-70, 10));
 }
 
-TEST(StandGround, BoundsHoldItsDerivatives) {
-  const StandGround ground(StandOptions{}, 3);
+TEST(WavyGround, BoundsHoldItsDerivatives) {
+  const WavyGround ground(StandOptions{}.paving(), 3);
   const GroundBounds bounds = ground.bounds();
   const core::RandomStream random(8, "test/ground");
   double steepest = 0, sharpest = 0;
@@ -66,9 +66,9 @@ TEST(StandGround, BoundsHoldItsDerivatives) {
   EXPECT_LT(steepest, 0.015) << "an apron this steep would not be built";
 }
 
-TEST(StandRelief, GradientMatchesCentralDifferencesInTheFieldAndInJoints) {
-  const StandRelief relief(StandOptions{}, 5);
-  const SlabGrid grid{StandOptions{}};
+TEST(SlabRelief, GradientMatchesCentralDifferencesInTheFieldAndInJoints) {
+  const SlabRelief relief(StandOptions{}.paving(), 5);
+  const SlabGrid grid(StandOptions{}.paving());
   const core::RandomStream random(7, "test/relief");
   for (std::uint64_t k = 0; k < 600; ++k) {
     Vector2d p = somewhere(random, k);
@@ -87,11 +87,11 @@ TEST(StandRelief, GradientMatchesCentralDifferencesInTheFieldAndInJoints) {
   }
 }
 
-TEST(StandRelief, TextureHasTheRootMeanSquareThatWasAskedFor) {
+TEST(SlabRelief, TextureHasTheRootMeanSquareThatWasAskedFor) {
   StandOptions options;
   options.relief_rms_mm = 3;
   options.joint_depth_mm = 0;
-  const StandRelief relief(options, 11);
+  const SlabRelief relief(options.paving(), 11);
   const core::RandomStream random(9, "test/relief");
   double sum = 0, sum2 = 0;
   constexpr int n = 40000;
@@ -105,12 +105,12 @@ TEST(StandRelief, TextureHasTheRootMeanSquareThatWasAskedFor) {
   EXPECT_NEAR(sum / n, 0, 0.2e-3);
 }
 
-TEST(StandRelief, GroovesLieOnTheJointsAndNowhereElse) {
+TEST(SlabRelief, GroovesLieOnTheJointsAndNowhereElse) {
   StandOptions with, without;
   without.joint_depth_mm = 0;
   with.joint_depth_mm = 3;
-  const StandRelief grooved(with, 5), plain(without, 5);
-  const SlabGrid grid(with);
+  const SlabRelief grooved(with.paving(), 5), plain(without.paving(), 5);
+  const SlabGrid grid(with.paving());
   double deepest = 0;
   for (int k = 0; k < 400; ++k) {
     const double y = grid.origin_m.y() + (7 + 0.37) * grid.size_m + 0.1 * (k % 30);
@@ -129,10 +129,10 @@ TEST(StandRelief, GroovesLieOnTheJointsAndNowhereElse) {
   EXPECT_LT(corner, 1.81 * 3e-3);
 }
 
-TEST(StandRelief, ManyPointsAtOnceAreTheSinglePointsToAMicrometreInTheFieldAndInJoints) {
+TEST(SlabRelief, ManyPointsAtOnceAreTheSinglePointsToAMicrometreInTheFieldAndInJoints) {
   const StandOptions options;
-  const StandRelief relief(options, 3);
-  const SlabGrid grid(options);
+  const SlabRelief relief(options.paving(), 3);
+  const SlabGrid grid(options.paving());
   std::vector<double> x, y;
   for (int k = 0; k < 5000; ++k) {
     x.push_back(-60 + 0.0237 * k);
@@ -154,8 +154,8 @@ TEST(StandRelief, ManyPointsAtOnceAreTheSinglePointsToAMicrometreInTheFieldAndIn
 
 TEST(Slabs, StepByMillimetresAtTheirJointsAndFollowTheBase) {
   const StandOptions options;
-  const StandGround ground(options, 1);
-  const SlabSurface slabs(options, 1, ground);
+  const WavyGround ground(options.paving(), 1);
+  const SlabSurface slabs(options.paving(), 1, ground);
   const SlabGrid& grid = slabs.grid();
   double sum2 = 0, largest = 0;
   int n = 0;
@@ -174,7 +174,7 @@ TEST(Slabs, StepByMillimetresAtTheirJointsAndFollowTheBase) {
 
 TEST(Slabs, MeshLiesOnTheirSurfaceToATenthOfAMillimetre) {
   const Scene& scene = tests::default_stand();
-  const SlabSurface slabs(StandOptions{}, 1, *scene.ground);
+  const SlabSurface slabs(StandOptions{}.paving(), 1, *scene.ground);
   const SlabGrid& grid = slabs.grid();
   int tested = 0;
   tests::for_each_static_triangle(
@@ -194,7 +194,7 @@ TEST(Slabs, MeshLiesOnTheirSurfaceToATenthOfAMillimetre) {
 
 TEST(Paint, LiesOneToThreeMillimetresAboveItsSlabAndLeavesTheJointsFree) {
   const Scene& scene = tests::default_stand();
-  const SlabSurface slabs(StandOptions{}, 1, *scene.ground);
+  const SlabSurface slabs(StandOptions{}.paving(), 1, *scene.ground);
   const SlabGrid& grid = slabs.grid();
   int tested = 0;
   tests::for_each_static_triangle(

@@ -204,7 +204,7 @@ TEST(Stand, EveryOptionChangesTheScene) {
 }
 
 TEST(Stand, EntryGivesTheSameGroundAsTheScene) {
-  const auto ground = scene_of(scene_node()).ground(scene_node(), 1);
+  const auto ground = make_ground(scene_node(), 1);
   for (const double x : {-50.0, 0.0, 31.7}) {
     EXPECT_EQ(ground->height_m(x, -12), default_stand().ground->height_m(x, -12));
   }
@@ -212,7 +212,7 @@ TEST(Stand, EntryGivesTheSameGroundAsTheScene) {
 
 TEST(Stand, ResolvedOptionsReadBackAsTheSameScene) {
   const core::ConfigNode node = scene_node("carts: 3\nslab_tilt_mm: 1\n");
-  const core::ConfigNode again = core::ConfigNode::parse("scene:\n" + scene_of(node).resolve(node), "resolved.yaml");
+  const core::ConfigNode again = core::ConfigNode::parse("scene:\n" + resolve_scene(node), "resolved.yaml");
   EXPECT_EQ(fingerprint(make_scene(node, 4)), fingerprint(make_scene(again.child("scene"), 4)));
 }
 

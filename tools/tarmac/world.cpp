@@ -22,7 +22,7 @@ struct TopLevel {
 }  // namespace
 
 void check_world(const scenarios::Scenario& scenario) {
-  scenes::scene_of(scenario.scene).resolve(scenario.scene);
+  scenes::resolve_scene(scenario.scene);
   sim::truth::resolve_motion(scenario.motion);
   sim::resolve_rig(scenario.rig);
   sim::resolve_faults(scenario.faults, scenario.rig);
@@ -33,7 +33,7 @@ std::string resolve_scenario(const scenarios::Scenario& scenario, std::uint64_t 
   TopLevel top{scenario};
   top.scenario.seed = static_cast<std::int64_t>(seed);
   std::string text = core::write_options(top);
-  text += "scene:\n" + scenes::scene_of(scenario.scene).resolve(scenario.scene);
+  text += "scene:\n" + scenes::resolve_scene(scenario.scene);
   text += "motion:\n" + sim::truth::resolve_motion(scenario.motion);
   text += "rig:\n" + sim::resolve_rig(scenario.rig);
   if (const std::string faults = sim::resolve_faults(scenario.faults, scenario.rig); !faults.empty())

@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "core/error.h"
-#include "tests/sim/truth/numeric_jet.h"
 #include "tests/sim/truth/stand_turn.h"
 #include "tests/support/numeric.h"
+#include "tests/support/numeric_jet.h"
 
 namespace tarmac::sim::truth {
 namespace {

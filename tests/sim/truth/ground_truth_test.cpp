@@ -46,7 +46,7 @@ class TruthFolder : public testing::Test {
     std::filesystem::remove_all(folder_);
     const ConfigNode scenario = ConfigNode::parse(scenario_text, "scenario.yaml");
     motion_ = make_motion(scenario.child("motion"), duration_from_s(7.5),
-                          scenes::scene_of(scenario.child("scene")).ground(scenario.child("scene"), 42), 42);
+                          scenes::make_ground(scenario.child("scene"), 42), 42);
     write_truth(folder_, scenario_text, resolve_motion(scenario.child("motion")), *motion_, rig(),
                 {{"clock-offset", "imu0", "5 ms"}});
   }

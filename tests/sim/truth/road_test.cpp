@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/sim/truth/numeric_jet.h"
+#include "tests/support/numeric_jet.h"
 
 namespace tarmac::sim::truth {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/truth/drive_options.h"
-#include "sim/truth/jet.h"
-#include "sim/truth/waves.h"
+#include "scenes/paths/jet.h"
+#include "scenes/paths/path_options.h"
+#include "scenes/paths/waves.h"
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 
 /// The heading is closed form: psi(s) = integral of the curvature's smooth_step blends, plus the wander's sines. The
 /// position is the integral of (cos psi, sin psi) over s, which has no closed form: nodes every 5 cm, summed up once by
@@ -60,4 +60,4 @@ class PlanarPath {
   double x0_m_ = 0, y0_m_ = 0;
 };
 
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

@@ -1,4 +1,4 @@
-#include "sim/truth/planar_path.h"
+#include "scenes/paths/planar_path.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "sim/truth/quadrature.h"
-#include "tests/sim/truth/numeric_jet.h"
+#include "scenes/paths/quadrature.h"
+#include "tests/support/numeric_jet.h"
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 namespace {
 
 using tests::derivative_of;
@@ -92,4 +92,4 @@ TEST(PlanarPath, RefusesABlendThatDoesNotFitAndPiecesOfNoKind) {
 }
 
 }  // namespace
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

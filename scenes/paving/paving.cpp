@@ -1,4 +1,4 @@
-#include "scenes/stand/ground.h"
+#include "scenes/paving/paving.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 
 #include "core/random.h"
 #include "core/vector_loop.h"
-#include "scenes/stand/layout.h"
 
 namespace tarmac::scenes {
 
@@ -22,22 +21,22 @@ inline int floor_to_int(double x) {
 
 }  // namespace
 
-StandGround::StandGround(const StandOptions& options, std::uint64_t seed)
-    : crossfall_(options.crossfall_percent / 100) {
+WavyGround::WavyGround(const PavingSpec& spec, std::uint64_t seed)
+    : crossfall_(spec.crossfall_percent / 100), crossfall_zero_y_m_(spec.crossfall_zero_y_m) {
   // Shorter waves are lower: roughly constant slope, as of a graded surface.
   constexpr std::array<double, 6> wavelength_m{90, 61, 38, 24, 14, 9};
   constexpr std::array<double, 6> share{1, 0.6, 0.3, 0.14, 0.05, 0.025};
-  const core::RandomStream random(seed, "scenes/stand/ground");
+  const core::RandomStream random(seed, spec.stream + "/ground");
   for (std::size_t k = 0; k < waves_.size(); ++k) {
     const double direction = tau * random.uniform(k, 0);
     const double wave_number = tau / wavelength_m[k];
-    waves_[k] = {options.undulation_mm * 1e-3 * share[k], wave_number * std::cos(direction),
+    waves_[k] = {spec.undulation_mm * 1e-3 * share[k], wave_number * std::cos(direction),
                  wave_number * std::sin(direction), tau * random.uniform(k, 1)};
   }
 }
 
-double StandGround::height_m(double x_m, double y_m, Eigen::Vector2d* gradient, Eigen::Vector3d* hessian) const {
-  double height = crossfall_ * (y_m - layout::corridor_north_y_m);
+double WavyGround::height_m(double x_m, double y_m, Eigen::Vector2d* gradient, Eigen::Vector3d* hessian) const {
+  double height = crossfall_ * (y_m - crossfall_zero_y_m_);
   Eigen::Vector2d g(0, crossfall_);
   Eigen::Vector3d h = Eigen::Vector3d::Zero();
   for (const Wave& w : waves_) {
@@ -52,7 +51,7 @@ double StandGround::height_m(double x_m, double y_m, Eigen::Vector2d* gradient, 
   return height;
 }
 
-GroundBounds StandGround::bounds() const {
+GroundBounds WavyGround::bounds() const {
   GroundBounds bounds{std::abs(crossfall_), 0, 0};
   for (const Wave& w : waves_) {
     const double k = std::hypot(w.kx_per_m, w.ky_per_m);
@@ -63,17 +62,18 @@ GroundBounds StandGround::bounds() const {
   return bounds;
 }
 
-SlabGrid::SlabGrid(const StandOptions& options)
-    : origin_m(layout::apron_west_m, options.apron_south_m),
-      size_m(options.slab_size_m),
-      nx(static_cast<int>(std::ceil((layout::apron_east_m - layout::apron_west_m) / size_m - 1e-9))),
-      ny(static_cast<int>(std::ceil((layout::apron_north_m - options.apron_south_m) / size_m - 1e-9))) {}
+SlabGrid::SlabGrid(const PavingSpec& spec)
+    : origin_m(spec.low_m),
+      size_m(spec.slab_size_m),
+      cell_m(spec.cell_m),
+      nx(static_cast<int>(std::ceil((spec.high_m - spec.low_m).x() / size_m - 1e-9))),
+      ny(static_cast<int>(std::ceil((spec.high_m - spec.low_m).y() / size_m - 1e-9))) {}
 
-SlabSurface::SlabSurface(const StandOptions& options, std::uint64_t seed, const Ground& ground)
-    : ground_(&ground), grid_(options) {
-  const core::RandomStream random(seed, "scenes/stand/slabs");
+SlabSurface::SlabSurface(const PavingSpec& spec, std::uint64_t seed, const Ground& ground)
+    : ground_(&ground), grid_(spec) {
+  const core::RandomStream random(seed, spec.stream + "/slabs");
   // A corner's deviation is offset + slope_x size/2 + slope_y size/2; each part carries a third of its variance.
-  const double sigma_m = options.slab_tilt_mm * 1e-3 / std::sqrt(3.0);
+  const double sigma_m = spec.slab_tilt_mm * 1e-3 / std::sqrt(3.0);
   const double sigma_slope = sigma_m / (grid_.size_m / 2);
   for (int k = 0; k < grid_.nx * grid_.ny; ++k) {
     const auto draw = [&](std::uint32_t j) {
@@ -111,15 +111,15 @@ constexpr double turn_rad = 0.4;      ///< the lattice is parallel neither to jo
 
 }  // namespace
 
-StandRelief::StandRelief(const StandOptions& options, std::uint64_t seed)
-    : grid_(options),
+SlabRelief::SlabRelief(const PavingSpec& spec, std::uint64_t seed)
+    : grid_(spec),
       slabs_per_m_(1 / grid_.size_m),
-      joint_depth_m_(options.joint_depth_mm * 1e-3),
+      joint_depth_m_(spec.joint_depth_mm * 1e-3),
       cos_per_m_(std::cos(turn_rad) / node_m),
       sin_per_m_(std::sin(turn_rad) / node_m),
       lattice_m_(static_cast<std::size_t>(lattice_size) * lattice_size) {
   // Grains of 0.05, 0.2 and 0.8 m. They are added up at the nodes once, so that a query interpolates one lattice.
-  const core::RandomStream random(seed, "scenes/stand/relief");
+  const core::RandomStream random(seed, spec.stream + "/relief");
   constexpr std::array<int, 3> nodes_a_grain{1, 4, 16};
   constexpr std::array<double, 3> share{1, 1, std::numbers::sqrt2};
   for (int b = 0; b < lattice_size; ++b) {
@@ -143,11 +143,11 @@ StandRelief::StandRelief(const StandOptions& options, std::uint64_t seed)
       squares += h * h;
     }
   }
-  const double scale = options.relief_rms_mm * 1e-3 / std::sqrt(squares / samples);
+  const double scale = spec.relief_rms_mm * 1e-3 / std::sqrt(squares / samples);
   for (float& height : lattice_m_) height = static_cast<float>(height * scale);
 }
 
-double StandRelief::texture_m(double x_m, double y_m, Eigen::Vector2d& gradient) const {
+double SlabRelief::texture_m(double x_m, double y_m, Eigen::Vector2d& gradient) const {
   const double u = cos_per_m_ * x_m + sin_per_m_ * y_m, v = cos_per_m_ * y_m - sin_per_m_ * x_m;
   const int i = floor_to_int(u), j = floor_to_int(v);
   const double s = u - i, t = v - j;
@@ -164,7 +164,7 @@ double StandRelief::texture_m(double x_m, double y_m, Eigen::Vector2d& gradient)
   return low + wt * (high - low);
 }
 
-double StandRelief::groove_m(double across_m, double along_m, double& d_across, double& d_along) const {
+double SlabRelief::groove_m(double across_m, double along_m, double& d_across, double& d_along) const {
   const double cell = floor_to_int(across_m * slabs_per_m_ + 0.5);
   const double d = across_m - cell * grid_.size_m;
   const double w = grid_.joint_width_m / 2;
@@ -179,7 +179,7 @@ double StandRelief::groove_m(double across_m, double along_m, double& d_across, 
   return -depth_m * profile;
 }
 
-double StandRelief::height_m(double x_m, double y_m, Eigen::Vector2d* gradient) const {
+double SlabRelief::height_m(double x_m, double y_m, Eigen::Vector2d* gradient) const {
   Eigen::Vector2d g = Eigen::Vector2d::Zero();
   const double height = texture_m(x_m, y_m, g);
 
@@ -242,8 +242,8 @@ TARMAC_VECTOR_LOOP void mark_joints(std::size_t count, const double* x_m, const 
 
 }  // namespace
 
-void StandRelief::heights_m(std::size_t count, const double* x_m, const double* y_m, float* heights, float* slope_x,
-                            float* slope_y) const {
+void SlabRelief::heights_m(std::size_t count, const double* x_m, const double* y_m, float* heights, float* slope_x,
+                           float* slope_y) const {
   constexpr std::size_t batch = 256;
   double u[batch], v[batch];
   int near_joint[batch];

@@ -1,4 +1,4 @@
-#include "sim/truth/planar_path.h"
+#include "scenes/paths/planar_path.h"
 
 #include <fmt/core.h>
 
@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/truth/quadrature.h"
-#include "sim/truth/smooth_step.h"
+#include "scenes/paths/quadrature.h"
+#include "scenes/paths/smooth_step.h"
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 
 namespace {
 constexpr double node_spacing_m = 0.05;
@@ -113,4 +113,4 @@ PlanarPath::Point PlanarPath::at(double s_m) const {
   return {nodes_[k].x_m + step.x(), nodes_[k].y_m + step.y(), heading(s_m)};
 }
 
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

@@ -6,9 +6,9 @@
 /// and not even analytic at its ends: no spline equals it. Steepest at the middle: h'(1/2) = 2. h(1 - u) = 1 - h(u).
 #pragma once
 
-#include "sim/truth/jet.h"
+#include "scenes/paths/jet.h"
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 
 /// h with three derivatives by u.
 Jet smooth_step(double u);
@@ -19,4 +19,4 @@ double smooth_step_integral(double u);
 /// h' at its steepest.
 inline constexpr double smooth_step_peak_slope = 2.0;
 
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

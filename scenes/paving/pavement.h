@@ -1,12 +1,12 @@
 /// Slabs, joints, paint on them, and the grass around.
 #pragma once
 
+#include "scenes/paving/paving.h"
 #include "scenes/primitives/mesh_builder.h"
-#include "scenes/stand/ground.h"
 
 namespace tarmac::scenes {
 
-/// Slabs in cells of about 0.6 m, so that they follow the base to a tenth of a millimetre, and sealed joints between.
+/// Slabs in cells of at most PavingSpec::cell_m, and sealed joints between.
 Mesh make_pavement(const SlabSurface& slabs);
 /// Grass beyond the apron's edges, 5 cm lower.
 Mesh make_grass(const Ground& ground, const SlabGrid& grid);
@@ -37,8 +37,5 @@ class Painter {
   MeshBuilder builder_;
   double thickness_m_ = 0.0012;
 };
-
-/// Lead-in lines, stop bars, stand numbers, safety lines and service roads.
-Mesh make_markings(const SlabSurface& slabs);
 
 }  // namespace tarmac::scenes

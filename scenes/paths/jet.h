@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 
 /// Derivatives are by whatever the jet's maker says: the time [s], or an argument such as the distance [m].
 struct Jet {
@@ -55,4 +55,4 @@ inline double radians(double degrees) {
   return degrees * (std::numbers::pi / 180);
 }
 
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

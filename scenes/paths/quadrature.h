@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 
 struct Gauss3 {
   static constexpr std::array<double, 3> node{0.11270166537925831148, 0.5, 0.88729833462074168852};  ///< in [0, 1]
@@ -17,4 +17,4 @@ struct Gauss3 {
   }
 };
 
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

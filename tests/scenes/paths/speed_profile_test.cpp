@@ -1,4 +1,4 @@
-#include "sim/truth/speed_profile.h"
+#include "scenes/paths/speed_profile.h"
 
 #include <gtest/gtest.h>
 
@@ -6,26 +6,26 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "tests/sim/truth/numeric_jet.h"
+#include "tests/support/numeric_jet.h"
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 namespace {
 
 using tests::derivative_of;
 
-SpeedProfile make_profile(const DriveOptions& options, double path_m, double ripple) {
+SpeedProfile make_profile(const SpeedPlan& plan, double path_m, double ripple) {
   std::vector<SpeedProfile::Problem> problems;
   const Waves waves(ripple, 15, 90, 4, core::RandomStream(1, "test/jitter"));
-  SpeedProfile profile(options, path_m, waves.integral(), problems);
+  SpeedProfile profile(plan, path_m, waves.integral(), problems);
   for (const auto& problem : problems) ADD_FAILURE() << problem.event << ": " << problem.message;
   return profile;
 }
 
-DriveOptions brake() {
-  DriveOptions options;
-  options.speed = {{.to_m_s = 7, .peak_m_s2 = 1.8}, {.to_m_s = 2.5, .peak_m_s2 = 5.5, .at_m = 69}};
-  options.stop_peak_m_s2 = 1;
-  return options;
+SpeedPlan brake() {
+  SpeedPlan plan;
+  plan.events = {{.to_m_s = 7, .peak_m_s2 = 1.8}, {.to_m_s = 2.5, .peak_m_s2 = 5.5, .at_m = 69}};
+  plan.stop_peak_m_s2 = 1;
+  return plan;
 }
 
 TEST(SpeedProfile, DerivativesMatchDifferencesThroughRampsAndRipple) {
@@ -68,10 +68,10 @@ TEST(SpeedProfile, BrakesWithThePeakAtThePlaceAndStopsAtTheEnd) {
 }
 
 TEST(SpeedProfile, RippleIsAShareOfTheSpeedAndAlwaysOnWhileMoving) {
-  DriveOptions options;
-  options.start.speed_m_s = 5;
-  options.stop_peak_m_s2 = 0;
-  const SpeedProfile profile = make_profile(options, 1e5, 0.015);
+  SpeedPlan plan;
+  plan.start_m_s = 5;
+  plan.stop_peak_m_s2 = 0;
+  const SpeedProfile profile = make_profile(plan, 1e5, 0.015);
   double sum2 = 0;
   constexpr int n = 100000;
   for (int k = 0; k < n; ++k) sum2 += std::pow(profile.at(k * 0.01).d1 / 5 - 1, 2);
@@ -80,11 +80,11 @@ TEST(SpeedProfile, RippleIsAShareOfTheSpeedAndAlwaysOnWhileMoving) {
 
 TEST(SpeedProfile, NamesTheEventThatDoesNotFit) {
   const auto problem_of = [](std::vector<SpeedEvent> events) {
-    DriveOptions options;
-    options.speed = std::move(events);
-    options.stop_peak_m_s2 = 0;
+    SpeedPlan plan;
+    plan.events = std::move(events);
+    plan.stop_peak_m_s2 = 0;
     std::vector<SpeedProfile::Problem> problems;
-    const SpeedProfile profile(options, 100, Waves(), problems);
+    const SpeedProfile profile(plan, 100, Waves(), problems);
     EXPECT_EQ(problems.size(), 1u);
     return problems.empty() ? SpeedProfile::Problem{99, ""} : problems[0];
   };
@@ -97,4 +97,4 @@ TEST(SpeedProfile, NamesTheEventThatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

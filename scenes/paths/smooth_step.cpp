@@ -1,11 +1,11 @@
-#include "sim/truth/smooth_step.h"
+#include "scenes/paths/smooth_step.h"
 
 #include <array>
 #include <cmath>
 
-#include "sim/truth/quadrature.h"
+#include "scenes/paths/quadrature.h"
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 
 namespace {
 
@@ -57,4 +57,4 @@ double smooth_step_integral(double u) {
   return u < 0.5 ? lower_half_integral(u) : u - 0.5 + lower_half_integral(1 - u);
 }
 
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

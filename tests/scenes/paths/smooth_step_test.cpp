@@ -1,13 +1,13 @@
-#include "sim/truth/smooth_step.h"
+#include "scenes/paths/smooth_step.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "sim/truth/quadrature.h"
-#include "tests/sim/truth/numeric_jet.h"
+#include "scenes/paths/quadrature.h"
+#include "tests/support/numeric_jet.h"
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 namespace {
 
 using tests::derivative_of;
@@ -47,4 +47,4 @@ TEST(SmoothStep, IntegralMatchesAMuchFinerQuadrature) {
 }
 
 }  // namespace
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

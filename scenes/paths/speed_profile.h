@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/truth/drive_options.h"
-#include "sim/truth/jet.h"
-#include "sim/truth/waves.h"
+#include "scenes/paths/jet.h"
+#include "scenes/paths/path_options.h"
+#include "scenes/paths/waves.h"
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 
 /// The planned distance S(t) is the integral of speeds that change by smooth_step; a ramp from v0 to v1 over T has the
 /// peak acceleration 2 |v1 - v0| / T and covers T (v0 + v1) / 2. The driven distance adds the driver's ripple,
@@ -23,7 +23,7 @@ class SpeedProfile {
   };
 
   /// `path_length_m` is where the stop at the end comes to rest. Problems are added to `problems`.
-  SpeedProfile(const DriveOptions& options, double path_length_m, Waves ripple, std::vector<Problem>& problems);
+  SpeedProfile(const SpeedPlan& plan, double path_length_m, Waves ripple, std::vector<Problem>& problems);
 
   /// Driven distance [m] with derivatives by time.
   Jet at(double t_s) const;
@@ -44,4 +44,4 @@ class SpeedProfile {
   double ripple_at_start_m_ = 0;
 };
 
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

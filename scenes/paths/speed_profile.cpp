@@ -1,22 +1,21 @@
-#include "sim/truth/speed_profile.h"
+#include "scenes/paths/speed_profile.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "sim/truth/smooth_step.h"
+#include "scenes/paths/smooth_step.h"
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 
-SpeedProfile::SpeedProfile(const DriveOptions& options, double path_length_m, Waves ripple,
-                           std::vector<Problem>& problems)
+SpeedProfile::SpeedProfile(const SpeedPlan& plan, double path_length_m, Waves ripple, std::vector<Problem>& problems)
     : ripple_(std::move(ripple)) {
   ripple_at_start_m_ = ripple_.value(0);
-  ramps_.push_back({0, 0, options.start.speed_m_s, 0, options.rest_s});
-  for (std::size_t i = 0; i < options.speed.size(); ++i) add(options.speed[i], i, problems);
-  if (options.stop_peak_m_s2 > 0 && ramps_.back().end_m_s() > 0) {
-    add({.to_m_s = 0, .peak_m_s2 = options.stop_peak_m_s2, .by_m = path_length_m}, options.speed.size(), problems);
+  ramps_.push_back({0, 0, plan.start_m_s, 0, plan.rest_s});
+  for (std::size_t i = 0; i < plan.events.size(); ++i) add(plan.events[i], i, problems);
+  if (plan.stop_peak_m_s2 > 0 && ramps_.back().end_m_s() > 0) {
+    add({.to_m_s = 0, .peak_m_s2 = plan.stop_peak_m_s2, .by_m = path_length_m}, plan.events.size(), problems);
   }
 }
 
@@ -66,4 +65,4 @@ Jet SpeedProfile::at(double t_s) const {
   return planned + chain(ripple_.at(planned.f), planned) - Jet{ripple_at_start_m_};
 }
 
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/random.h"
-#include "sim/truth/jet.h"
+#include "scenes/paths/jet.h"
 
-namespace tarmac::sim::truth {
+namespace tarmac::scenes {
 
 /// sum of a_k sin(k_k x + phase_k), with derivatives by x.
 class Waves {
@@ -66,4 +66,4 @@ class Waves {
   std::vector<Wave> waves_;
 };
 
-}  // namespace tarmac::sim::truth
+}  // namespace tarmac::scenes

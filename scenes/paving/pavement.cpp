@@ -1,9 +1,7 @@
-#include "scenes/stand/pavement.h"
+#include "scenes/paving/pavement.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "scenes/stand/layout.h"
 
 namespace tarmac::scenes {
 
@@ -11,8 +9,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
-
-constexpr double cell_target_m = 0.625;
 
 /// Vertices of one slab, (cells + 1)^2, row by row.
 struct SlabPatch {
@@ -90,7 +86,7 @@ double area_m2(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
 
 Mesh make_pavement(const SlabSurface& slabs) {
   const SlabGrid& grid = slabs.grid();
-  const int cells = static_cast<int>(std::ceil(grid.size_m / cell_target_m));
+  const int cells = static_cast<int>(std::ceil(grid.size_m / grid.cell_m));
   MeshBuilder builder("pavement");
   builder.use(MaterialId::concrete_dry);
   std::vector<SlabPatch> patches;
