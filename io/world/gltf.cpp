@@ -54,7 +54,8 @@ Document split_glb(const std::string& bytes, const std::filesystem::path& file) 
   Document document;
   document.json = Json::parse(bytes.begin() + 20, bytes.begin() + 20 + static_cast<std::ptrdiff_t>(json_bytes));
   if (28 + json_bytes <= bytes.size()) document.chunk_bytes = word_at(bytes, 20 + json_bytes);
-  if (document.chunk_bytes > 0 && 28 + json_bytes + document.chunk_bytes > bytes.size()) fail("its binary chunk is cut");
+  if (document.chunk_bytes > 0 && 28 + json_bytes + document.chunk_bytes > bytes.size())
+    fail("its binary chunk is cut");
   return document;
 }
 
@@ -321,8 +322,8 @@ scenes::MeshFile read_gltf(const std::filesystem::path& file) {
   const VtkMessages messages;
   std::vector<char> chunk;
   const bool built = loader->LoadModelMetaDataFromFile(file.string()) &&
-                     (!is_glb(file) || loader->LoadFileBuffer(file.string(), chunk)) &&
-                     loader->LoadModelData(chunk) && loader->BuildModelVTKGeometry();
+                     (!is_glb(file) || loader->LoadFileBuffer(file.string(), chunk)) && loader->LoadModelData(chunk) &&
+                     loader->BuildModelVTKGeometry();
   if (!built) {
     throw core::InputError(fmt::format("{}: cannot be read: {}", file.string(), messages.first()));
   }

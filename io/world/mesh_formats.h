@@ -1,5 +1,5 @@
-/// One function a format; mesh_readers.h chooses among them. What is checked before VTK sees a file is what VTK takes on
-/// trust: sizes that a header promises, indices, numbers.
+/// One function a format; mesh_readers.h chooses among them. What is checked before VTK sees a file is what VTK takes
+/// on trust: sizes that a header promises, indices, numbers.
 #pragma once
 
 #include <filesystem>

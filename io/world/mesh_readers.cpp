@@ -109,7 +109,8 @@ void append_triangles(vtkPolyData& data, const std::filesystem::path& file, scen
     if (cell_of == nullptr) continue;
     const vtkIdType id = cell->GetCurrentCellId();
     const vtkIdType skipped = data.GetNumberOfVerts() + data.GetNumberOfLines();
-    cell_of->push_back(static_cast<int>(cells == nullptr ? id + skipped : static_cast<vtkIdType>(cells->GetTuple1(id))));
+    cell_of->push_back(
+        static_cast<int>(cells == nullptr ? id + skipped : static_cast<vtkIdType>(cells->GetTuple1(id))));
   }
 }
 

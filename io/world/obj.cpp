@@ -1,5 +1,5 @@
-// OBJ: text; v, f, usemtl and g are what counts here. VTK's reader takes numbers and indices on trust, so a pass over the
-// lines comes first, which also knows their numbers.
+// OBJ: text; v, f, usemtl and g are what counts here. VTK's reader takes numbers and indices on trust, so a pass over
+// the lines comes first, which also knows their numbers.
 #include <fmt/format.h>
 #include <vtkCellData.h>
 #include <vtkFieldData.h>
@@ -64,8 +64,8 @@ void check_face(Words words, std::int64_t vertices, const std::filesystem::path&
     }
     const std::int64_t counted = index < 0 ? vertices + index + 1 : index;
     if (counted < 1 || counted > vertices) {
-      throw core::InputError(fmt::format("{}:{}: a face refers to vertex {}, and {} stand above it", file.string(), line,
-                                         index, vertices));
+      throw core::InputError(fmt::format("{}:{}: a face refers to vertex {}, and {} stand above it", file.string(),
+                                         line, index, vertices));
     }
   }
   if (corners < 3) {

@@ -19,10 +19,10 @@ namespace tarmac::io::world {
 namespace {
 
 std::size_t size_of_type(const std::string& type) {
-  static const std::map<std::string, std::size_t> sizes{
-      {"char", 1},  {"uchar", 1},  {"int8", 1},    {"uint8", 1},  {"short", 2},   {"ushort", 2}, {"int16", 2}, {"uint16", 2},
-      {"int", 4},   {"uint", 4},   {"int32", 4},   {"uint32", 4}, {"float", 4},   {"float32", 4},
-      {"double", 8}, {"float64", 8}};
+  static const std::map<std::string, std::size_t> sizes{{"char", 1},  {"uchar", 1},   {"int8", 1},   {"uint8", 1},
+                                                        {"short", 2}, {"ushort", 2},  {"int16", 2},  {"uint16", 2},
+                                                        {"int", 4},   {"uint", 4},    {"int32", 4},  {"uint32", 4},
+                                                        {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
   const auto found = sizes.find(type);
   return found == sizes.end() ? 0 : found->second;
 }
@@ -97,7 +97,8 @@ const Element& element_of(const PlyHeader& header, const char* name, const std::
   for (const Element& element : header.elements) {
     if (element.name == name) return element;
   }
-  throw core::InputError(fmt::format("{}: there is no element '{}' in the header: this is no mesh", file.string(), name));
+  throw core::InputError(
+      fmt::format("{}: there is no element '{}' in the header: this is no mesh", file.string(), name));
 }
 
 }  // namespace

@@ -43,6 +43,17 @@ enum class MaterialId : std::uint16_t {
   cone_orange,
   retro_sheeting_ra1,
   grass_green,
+  floor_vinyl,
+  wood,
+  cardboard,
+  steel_orange,
+  brick,
+  plaster,
+  car_paint_dark,
+  soil,
+  rock,
+  bark,
+  foliage,
   count
 };
 

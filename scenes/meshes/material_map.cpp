@@ -86,8 +86,8 @@ void refuse_unused_keys(const core::ConfigNode& map, const MeshFile& file, const
                                  const std::filesystem::path& path) {
   const auto count = std::count(file.name_of_triangle.begin(), file.name_of_triangle.end(), name);
   if (file.names.empty()) {
-    entry.fail_at("material", fmt::format("is missing: {} names no materials, so all its triangles need this one",
-                                          path.string()));
+    entry.fail_at("material",
+                  fmt::format("is missing: {} names no materials, so all its triangles need this one", path.string()));
   }
   if (file.names[name].empty()) {
     entry.fail_at("material", fmt::format("is missing: {} of {} triangles of {} stand in a group without a material's "

@@ -101,8 +101,9 @@ std::vector<Request> read_requests(const core::ConfigNode& list) {
 const MeshReader& reader_for(const Request& request) {
   const MeshReader* reader = installed_mesh_reader();
   if (reader == nullptr) {
-    request.node.fail("this program was built without readers of mesh files: its main() must call "
-                      "io::world::install_mesh_readers()");
+    request.node.fail(
+        "this program was built without readers of mesh files: its main() must call "
+        "io::world::install_mesh_readers()");
   }
   return *reader;
 }
@@ -147,8 +148,9 @@ void check_finite(const MeshFile& file, const fs::path& path) {
   for (std::size_t i = 0; i < file.vertices.size(); ++i) {
     const Eigen::Vector3f& p = file.vertices[i];
     if (p.allFinite()) continue;
-    throw core::InputError(fmt::format("{}: vertex {} (counted from 0) is ({}, {}, {}): every coordinate must be finite",
-                                       path.string(), i, p.x(), p.y(), p.z()));
+    throw core::InputError(
+        fmt::format("{}: vertex {} (counted from 0) is ({}, {}, {}): every coordinate must be finite", path.string(), i,
+                    p.x(), p.y(), p.z()));
   }
 }
 
@@ -170,8 +172,8 @@ void check_extent(const Mesh& mesh, const Request& request) {
                     request.file.string(), box, kFarthest_m));
   }
   if (size < kSmallest_m) {
-    throw core::InputError(fmt::format("{}: {}, less than a millimetre: set `scale:` (1000 for kilometres)",
-                                       request.file.string(), box));
+    throw core::InputError(
+        fmt::format("{}: {}, less than a millimetre: set `scale:` (1000 for kilometres)", request.file.string(), box));
   }
   const double reach = request.options.T_world_mesh.translation().cwiseAbs().maxCoeff();
   if (reach + 2 * farthest > kWorld_m) {
