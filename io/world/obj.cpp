@@ -9,6 +9,7 @@
 #include <vtkPolyData.h>
 #include <vtkStringArray.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>

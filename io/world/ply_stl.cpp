@@ -5,6 +5,7 @@
 #include <vtkPolyData.h>
 #include <vtkSTLReader.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -132,7 +133,7 @@ scenes::MeshFile read_ply(const std::filesystem::path& file) {
   vtkNew<vtkPLYReader> reader;
   const VtkMessages messages;
   reader->SetFileName(file.c_str());
-  reader->DuplicatePointsForFaceTextureOff();
+  reader->SetDuplicatePointsForFaceTexture(false);
   reader->Update();
   if (const std::string said = messages.first(); !said.empty()) {
     throw core::InputError(fmt::format("{}: cannot be read, or is cut short: {}", file.string(), said));
