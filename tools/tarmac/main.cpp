@@ -7,6 +7,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "io/world/mesh_readers.h"
 #include "tools/tarmac/build_info.h"
 #include "tools/tarmac/commands.h"
 #include "tools/tarmac/interrupt.h"
@@ -310,5 +311,6 @@ int run_main(int argc, char** argv) {
 }  // namespace tarmac::tools
 
 int main(int argc, char** argv) {
+  tarmac::io::world::install_mesh_readers();
   return tarmac::tools::run_main(argc, argv);
 }
