@@ -43,14 +43,12 @@ enum class MaterialId : std::uint16_t {
   cone_orange,
   retro_sheeting_ra1,
   grass_green,
-<<<<<<< HEAD
   sign_face_yellow,
   sign_face_red,
   sign_face_black,
   marker_blue,
   light_lens,
   tunnel_concrete,
-=======
   floor_vinyl,
   wood,
   cardboard,
@@ -62,7 +60,6 @@ enum class MaterialId : std::uint16_t {
   rock,
   bark,
   foliage,
->>>>>>> controls
   count
 };
 
