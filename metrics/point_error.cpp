@@ -71,7 +71,7 @@ class SweepScoring {
       const auto i = static_cast<std::size_t>((static_cast<double>(k) + u) * static_cast<double>(n) /
                                               static_cast<double>(std::min(wanted, n)));
       while (firings_[f].last <= i) ++f;
-      if (!firings_[f].covered || !is_finite(i)) continue;
+      if (!firings_[f].covered || !is_finite(i) || !stands(i)) continue;
       const Eigen::Vector3d x = s_.A_first * (firings_[f].T_map_body * (s_.T_body_lidar_nominal * sweep_.point(i)));
       const Eigen::Vector3d y = firings_[f].T_world_body * (s_.true_mounting(firings_[f].sensor) * sweep_.point(i));
       map.p_world_m.push_back(x.cast<float>());
@@ -85,6 +85,9 @@ class SweepScoring {
   bool is_finite(std::size_t i) const {
     return std::isfinite(sweep_.x_m[i]) && std::isfinite(sweep_.y_m[i]) && std::isfinite(sweep_.z_m[i]);
   }
+
+  /// Something of the world is there: no ghost, no part of the own vehicle, no noise.
+  bool stands(std::size_t i) const { return sim::truth::on_a_surface(labels_.kind_of(i)); }
 
   /// The poses of the LiDAR at one firing.
   struct Seen {
@@ -100,7 +103,7 @@ class SweepScoring {
       if (!firing.covered) continue;
       Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();  // sum of (p, 1) (p, 1)^T
       for (std::size_t i = firing.first; i < firing.last; ++i) {
-        if (labels_.moving[i] || !is_finite(i)) continue;
+        if (labels_.moving[i] || !is_finite(i) || !stands(i)) continue;
         const Eigen::Vector4d p = sweep_.point(i).homogeneous();
         moments.noalias() += p * p.transpose();
       }
@@ -130,6 +133,7 @@ class SweepScoring {
       if (!is_finite(i)) continue;
       ++out.points;
       ++out.placed;
+      if (!stands(i)) continue;
       const Eigen::Vector4d p = sweep_.point(i).homogeneous();
       if (labels_.moving[i]) {
         out.moving.add((to_error[0] * p).squaredNorm());

@@ -27,6 +27,7 @@ void LidarOptions::visit(OptionVisitor& v) {
   v("T_body_lidar", T_body_lidar, "pose of the sensor frame in the body frame (x forward, y left, z up)");
   v.group("noise", noise, "errors of the measurement");
   v.group("spin", spin, "how unevenly the head turns");
+  v.group("beam", beam, "what a beam is beyond a line with one echo");
   v("column_times", column_times,
     "fire the columns at recorded times: the path of a plain folder or of a CSV file sweep,column,t_ns");
   v.list("replay", replay, "the same, written out");
@@ -40,6 +41,7 @@ void RigOptions::visit(OptionVisitor& v) {
     v.group("lidar", lidars[0], "a LiDAR; or `lidars:`, a list of such blocks");
   if (has_imu) v.group("imu", imu, "an IMU; without this block the rig carries none");
   v("gravity_m_s2", gravity_m_s2, "magnitude of gravity", {.above = 0});
+  v.group("body", body, "the vehicle that the sensors stand on, as far as they see it");
 }
 
 namespace {
@@ -127,6 +129,8 @@ RigOptions read_rig(const ConfigNode& rig) {
     read_sensor(nodes[k], options.lidars[k]);
     read_mode(nodes[k], options.lidars[k]);
     read_column_times(nodes[k], options.lidars[k]);
+    lidar::check_beam(nodes[k].child("beam"), options.lidars[k].beam, options.lidars[k].profile);
+    lidar::check_body(rig.child("body"), options.body, options.lidars[k].T_body_lidar);
     try {
       firing_table(options, 1, k);
     } catch (const InputError& error) {

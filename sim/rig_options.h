@@ -10,7 +10,9 @@
 #include "core/options.h"
 #include "core/rig.h"
 #include "sim/imu/imu.h"
+#include "sim/lidar/beam_options.h"
 #include "sim/lidar/firing.h"
+#include "sim/lidar/own_body.h"
 #include "sim/lidar/profile.h"
 #include "sim/lidar/sweep_simulator.h"
 
@@ -27,6 +29,7 @@ struct LidarOptions {
   core::SE3 T_body_lidar = core::SE3::Identity();
   lidar::NoiseOptions noise;
   lidar::SpinOptions spin;
+  lidar::BeamOptions beam;
   /// Path of recorded column times (lidar/column_times.h), relative as `model` is. After read_rig: empty, and `replay`
   /// holds what was read.
   std::string column_times;
@@ -43,6 +46,7 @@ struct RigOptions {
   bool has_imu = false;                 ///< the block is there: without it the rig carries none
   ImuOptions imu;
   double gravity_m_s2 = 9.80665;
+  lidar::BodyOptions body;
   void visit(core::OptionVisitor& v);
 };
 

@@ -48,6 +48,14 @@ std::string speed_note(const PipelineTotals& totals, double simulated_s, double 
                      simulated_s / wall_s);
 }
 
+lidar::Requests requests_of(const LidarOptions& lidar, const lidar::BodyOptions& body, bool point_truth) {
+  lidar::Requests requests;
+  requests.point_truth = point_truth;
+  requests.beam = lidar.beam;
+  requests.body = body;
+  return requests;
+}
+
 std::int64_t sweeps_within(const lidar::FiringTable& firing, const SimulationInput& input) {
   const Time end = std::min(Time(input.duration), input.motion->end());
   const std::int64_t count = firing.sweeps_until(end);
@@ -121,7 +129,8 @@ std::vector<LidarRun> make_lidars(Setup& setup, const SimulationInput& input,
     const LidarOptions& options = setup.rig.lidars[k];
     const lidar::Mounting mounting{static_cast<std::uint16_t>(k), setup.truth.lidars[k].T_body_lidar};
     lidar::SweepSimulator simulator(options.profile, firing_table(setup.rig, input.seed, k), mounting, options.noise,
-                                    input.seed, tracer, input.scene, input.motion, {.point_truth = input.point_truth});
+                                    input.seed, tracer, input.scene, input.motion,
+                                    requests_of(options, setup.rig.body, input.point_truth));
     const std::int64_t count = sweeps_within(simulator.firing(), input);
     faults::LidarFaults faults = lidar_faults(simulator.firing(), count, input.seed, k, setup);
     runs.push_back({std::move(simulator), count, std::move(faults)});

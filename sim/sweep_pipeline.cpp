@@ -46,7 +46,7 @@ truth::PointLabels labels_of(const lidar::SimulatedSweep& simulated, const scene
     const std::uint32_t id = simulated.instance[i];
     if (id == truth::PointLabels::no_instance) {
       const bool self = simulated.kind[i] == truth::ReturnKind::self;
-      labels.label.push_back(self ? scenes::Label::other : scenes::Label::none);
+      labels.label.push_back(self ? scenes::Label::own_body : scenes::Label::none);
       labels.moving.push_back(0);
       continue;
     }

@@ -32,6 +32,7 @@ std::vector<std::size_t> choose(const LidarSweep& sweep, const PointLabels& labe
   for (std::size_t i = 0; i < sweep.size(); ++i) {
     const double range_m = sweep.point(i).norm();
     if (labels.moving[i] || !std::isfinite(range_m) || !(range_m > 0)) continue;
+    if (!sim::truth::on_a_surface(labels.kind_of(i))) continue;
     range_sum_m += range_m;
     all.push_back(i);
   }

@@ -73,6 +73,7 @@ class FiringTable {
   std::int64_t sweeps_until(core::Time end) const;
 
   std::int32_t offset_ns(std::size_t channel) const { return offset_ns_[channel]; }
+  double step_rad() const { return step_rad_; }  ///< of the head, from one cycle to the next
   bool staggered() const { return staggered_; }  ///< channels fire at different instants
   /// Unit vector of the beam in the sensor frame.
   Eigen::Vector3d direction(const Cycle& cycle, std::size_t channel) const {

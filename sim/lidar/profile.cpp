@@ -236,6 +236,9 @@ void complete(const ConfigNode& node, Profile& p) {
     node.fail_at("sigma_m", fmt::format("has {} values; {} were expected", p.sigma_m.size(), p.sigma_from_m.size()));
   if (p.sigma_from_m.front() != 0) node.fail_at("sigma_from_m", "must begin with 0");
   if (!std::is_sorted(p.sigma_from_m.begin(), p.sigma_from_m.end())) node.fail_at("sigma_from_m", "must ascend");
+  if (!p.divergence_mrad.empty() && p.divergence_mrad.size() != 2)
+    node.fail_at("divergence_mrad",
+                 fmt::format("has {} values; [horizontal, vertical] was expected", p.divergence_mrad.size()));
   if (!(p.min_range_m < p.max_range_m)) node.fail_at("max_range_m", "must be above min_range_m");
   if (!(p.range_10_percent_m < p.range_80_percent_m))
     node.fail_at("range_80_percent_m", "must be above range_10_percent_m");
@@ -280,6 +283,10 @@ void Profile::visit(core::OptionVisitor& v) {
   v("sigma_from_m", sigma_from_m, "ranges at which sigma_m changes", {.at_least = 0});
   v("sigma_m", sigma_m, "range noise, one standard deviation", {.at_least = 0});
   v("channel_bias_sigma_m", channel_bias_sigma_m, "spread of the constant range errors of channels", {.at_least = 0});
+  v("divergence_mrad", divergence_mrad,
+    "[horizontal, vertical] full width of a beam at half its intensity; [] = unknown", {.above = 0, .at_most = 100});
+  v("pulse_length_ns", pulse_length_ns, "of the laser's pulse: echoes closer than half of its way become one",
+    {.above = 0, .at_most = 1000});
   v("elevation_deg", elevation_deg, "of each channel, positive up", {.at_least = -90, .at_most = 90});
   v("azimuth_offset_cw_deg", azimuth_offset_cw_deg, "of each channel, clockwise", {.at_least = -180, .at_most = 180});
   v("firing_us", firing_us, "firing instant of each channel inside the cycle, ascending; [] with states",

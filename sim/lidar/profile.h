@@ -41,6 +41,9 @@ struct Profile {
   double threshold_snr = 0;
   std::vector<double> sigma_from_m, sigma_m;
   double channel_bias_sigma_m = 0;
+  std::vector<double>
+      divergence_mrad;  ///< full width of a beam at half its intensity, horizontal and vertical; or none
+  double pulse_length_ns = 5;
   std::vector<double> elevation_deg, azimuth_offset_cw_deg, firing_us, ring;  ///< one value a channel
   /// One value a channel, or none: where its beam starts, from the head's circle, along and left of the beam's own
   /// heading, and up.

@@ -9,23 +9,19 @@
 #include "core/measurements.h"
 #include "core/trajectory.h"
 #include "scenes/scene.h"
+#include "sim/lidar/aim.h"
+#include "sim/lidar/beam_model.h"
+#include "sim/lidar/beam_options.h"
 #include "sim/lidar/effects/echoes.h"
 #include "sim/lidar/firing.h"
+#include "sim/lidar/own_body.h"
 #include "sim/lidar/profile.h"
+#include "sim/lidar/receiver.h"
 #include "sim/lidar/sweep_motion.h"
 #include "sim/raycast/tracer.h"
 #include "sim/truth/return_kind.h"
 
 namespace tarmac::sim::lidar {
-
-struct NoiseOptions {
-  double range_scale = 1;
-  double channel_bias_scale = 1;
-  bool quantisation = true;
-  bool dropout = true;
-  bool intensity = true;
-  void visit(core::OptionVisitor& v);
-};
 
 struct Mounting {
   std::uint16_t sensor = 0;                        ///< index into Rig::lidars; part of the names of random draws
@@ -35,6 +31,10 @@ struct Mounting {
 /// What is made beyond a plain sweep.
 struct Requests {
   bool point_truth = false;  ///< true range, normal and incidence of every point
+  BeamOptions beam;
+  BodyOptions body;
+  std::size_t batch_rays =
+      1024;  ///< that are worked on at once: small enough for the second-level cache with all arrays
 };
 
 /// A sweep and, per point of it, what was hit.
@@ -45,8 +45,10 @@ struct SimulatedSweep {
   /// As in truth::PointLabels; empty unless they were asked for.
   std::vector<double> true_range_m;
   std::vector<float> normal_x, normal_y, normal_z, cos_incidence;
-  std::size_t rays = 0;    ///< beams that were fired
-  double trace_cpu_s = 0;  ///< processor time inside the tracer
+  std::size_t rays = 0;         ///< beams that were fired
+  std::size_t traced_rays = 0;  ///< rays of their footprints and beyond panes, where beams are more than lines
+  std::size_t split_beams = 0;  ///< beams whose outer rays were traced
+  double trace_cpu_s = 0;       ///< processor time inside the tracer
 };
 
 /// Arrays that a sweep is made in; keep one a thread and hand it from sweep to sweep.
@@ -54,15 +56,12 @@ struct Workspace {
   raycast::Rays rays;
   raycast::Hits hits;
   Echoes echoes;
-  std::vector<Cycle> cycles;
-  std::vector<float> x_m, y_m, z_m;            ///< points of all firings, in the sensor's frame
-  std::vector<double> true_range_m;            ///< of all firings, before noise
-  std::vector<double> beam_x, beam_y, beam_z;  ///< of all firings, where beams differ from cycle to cycle
-};
-
-/// A cycle's beams as arrays: unit vectors in the head's frame, seconds into the cycle.
-struct Beams {
-  const double *x, *y, *z, *offset_s;
+  AimedCycles aimed;
+  std::vector<float> x_m, y_m, z_m;  ///< points of all firings, in the sensor's frame
+  std::vector<double> true_range_m;  ///< of all firings, before noise
+  BeamWorkspace beams;
+  Receiver::Scratch receiver;
+  Returns firsts, seconds;
 };
 
 /// The rays of a whole sweep and the tiles they are traced in.
@@ -101,14 +100,16 @@ class SweepSimulator {
  private:
   raycast::SweepTracer tracer_for(const SweepSpan& span) const;
   SweepMotion motion_of(const SweepSpan& span) const;
-  void aim(const SweepSpan& span, const SweepMotion& motion, std::int64_t first, std::size_t cycles,
-           const Eigen::Vector3d& base, Workspace& w) const;
-  Beams beams_at(const Workspace& w, std::size_t i) const;  // of the cycle whose first firing is i
-  void point_beams(Workspace& w) const;
+  void sweep_lines(const SweepSpan& span, Workspace& w, SimulatedSweep& out) const;
+  void sweep_beams(const SweepSpan& span, Workspace& w, SimulatedSweep& out) const;
   void measure(const SweepSpan& span, std::int64_t first, Workspace& w) const;
+  void place(const std::vector<double>& range_m, Workspace& w) const;
   std::size_t report(Workspace& w, std::size_t points, SimulatedSweep& out) const;
   bool reported(double range_m) const { return range_m >= profile_.min_range_m && range_m <= profile_.max_range_m; }
   void report_truth(const Workspace& w, std::size_t points, SimulatedSweep& out) const;
+  std::size_t report_beams(Workspace& w, core::Time begin, std::size_t points, SimulatedSweep& out) const;
+  void report_return(const Returns& returns, std::size_t i, std::size_t at, SimulatedSweep& out) const;
+  Eigen::Vector3f point_of(const Workspace& w, std::size_t firing, double range_m) const;
 
   Profile profile_;
   FiringTable firing_;
@@ -123,12 +124,16 @@ class SweepSimulator {
   RangeNoise range_noise_;
   ChannelBias channel_bias_;
   Intensity intensity_;
-  // Of each channel: the beam at azimuth 0 (unit vector, sensor frame), seconds into the cycle, ring.
-  std::vector<double> beam_x_, beam_y_, beam_z_, offset_s_;
-  std::vector<Eigen::Vector3d> origin_offset_;  // of the beam from the cycle's origin, at azimuth 0 [m]
+  Aim aim_;
+  std::vector<std::int32_t> offset_ns_;
   std::vector<std::uint16_t> ring_;
-  std::size_t batch_cycles_;
-  std::vector<std::uint32_t> batch_tiles_;
+  Batches batches_;
+  /// Where beams are more than lines.
+  struct Beyond {
+    BeamModel model;
+    Receiver receiver;
+  };
+  std::shared_ptr<const Beyond> beyond_;
 };
 
 }  // namespace tarmac::sim::lidar

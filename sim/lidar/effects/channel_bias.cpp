@@ -23,6 +23,9 @@ ChannelBias::ChannelBias(const Profile& p, double scale, std::uint64_t seed, con
 }
 
 void ChannelBias::operator()(Echoes& echoes) const {
+  for (std::size_t i = 0; i < echoes.firings.size(); ++i)
+    if (echoes.range_m[i] > 0) echoes.range_m[i] += bias_m_[echoes.firings[i] % echoes.channels];
+  if (!echoes.firings.empty()) return;
   for (std::size_t first = 0; first < echoes.size(); first += echoes.channels)
     add(std::min(echoes.channels, echoes.size() - first), bias_m_.data(), echoes.range_m.data() + first);
 }
