@@ -212,10 +212,12 @@ Workload workload_of(const ConfigNode& rig, Duration duration, bool point_truth)
     const lidar::FiringTable firing = firing_table(options, 1, k);
     const auto sweeps = static_cast<std::size_t>(std::max<std::int64_t>(0, firing.sweeps_until(Time(duration))));
     work.sweeps += sweeps;
-    work.rays += sweeps * static_cast<std::size_t>(firing.sweep(0).cycles) * firing.channels();
+    const std::size_t rays = sweeps * static_cast<std::size_t>(firing.sweep(0).cycles) * firing.channels();
+    const double points = static_cast<double>(rays) * (options.lidars[k].beam.dual() ? 1.3 : 1);  // few have two returns
+    work.rays += rays;
+    work.bytes += (point_bytes + (point_truth ? point_truth_bytes : 0)) * points;
   }
-  work.bytes = (point_bytes + (point_truth ? point_truth_bytes : 0)) * static_cast<double>(work.rays) +
-               tum_bytes_per_s * to_s(duration);
+  work.bytes += tum_bytes_per_s * to_s(duration);
   if (options.has_imu) work.bytes += imu_bytes * options.imu.rate_hz * to_s(duration);
   return work;
 }

@@ -47,7 +47,7 @@ struct SimulationSummary {
 };
 
 /// How much a drive is, before it is simulated. `bytes`: what recording and truth about take on the disk where most beams
-/// return something; open skies take less, sensors that report two returns up to twice as much.
+/// return something; open skies take less.
 struct Workload {
   std::size_t sweeps = 0, rays = 0;
   double bytes = 0;
