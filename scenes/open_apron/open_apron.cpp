@@ -37,7 +37,7 @@ constexpr std::array<Kind, 9> kinds{
      {"belt_loader", Label::ground_equipment, 2, [](MeshBuilder& b) { add_belt_loader(b, 2.2); }},
      {"ground_power_unit", Label::ground_equipment, 2, add_ground_power_unit},
      {"catering_truck", Label::vehicle, 1, add_catering_truck},
-     {"passenger_stairs", Label::ground_equipment, 1, add_passenger_stairs}}};
+     {"passenger_stairs", Label::ground_equipment, 1, [](MeshBuilder& b) { add_passenger_stairs(b); }}}};
 
 double plan_radius_m(const Mesh& mesh) {
   float radius = 0;
