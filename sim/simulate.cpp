@@ -202,15 +202,23 @@ WrittenImu write_imu(Setup& setup, const SimulationInput& input, RecordingWriter
 
 }  // namespace
 
-Workload workload_of(const ConfigNode& rig, Duration duration) {
+Workload workload_of(const ConfigNode& rig, Duration duration, bool point_truth) {
+  // Measured on the stand, compressed: a point of the recording with its label, the same with its truth, an IMU sample,
+  // a line of truth.tum.
+  constexpr double point_bytes = 11, point_truth_bytes = 18, imu_bytes = 46, tum_bytes_per_s = 118e3;
   const RigOptions options = read_rig(rig);
   Workload work;
   for (std::size_t k = 0; k < options.lidars.size(); ++k) {
     const lidar::FiringTable firing = firing_table(options, 1, k);
     const auto sweeps = static_cast<std::size_t>(std::max<std::int64_t>(0, firing.sweeps_until(Time(duration))));
     work.sweeps += sweeps;
-    work.rays += sweeps * static_cast<std::size_t>(firing.sweep(0).cycles) * firing.channels();
+    const std::size_t rays = sweeps * static_cast<std::size_t>(firing.sweep(0).cycles) * firing.channels();
+    const double points = static_cast<double>(rays) * (options.lidars[k].beam.dual() ? 1.3 : 1);  // few have two returns
+    work.rays += rays;
+    work.bytes += (point_bytes + (point_truth ? point_truth_bytes : 0)) * points;
   }
+  work.bytes += tum_bytes_per_s * to_s(duration);
+  if (options.has_imu) work.bytes += imu_bytes * options.imu.rate_hz * to_s(duration);
   return work;
 }
 

@@ -60,6 +60,7 @@ void add_scenario_options(CLI::App* command, Arguments& a, bool needs_out) {
   command->add_option("--set", a.scenario.sets, "override a field: motion.cruise_m_s=5 (repeatable)")
       ->allow_extra_args(false);
   command->add_flag("--fast", a.scenario.fast, "lift the pinned instruction set of the ray tracer");
+  command->add_flag("--force", a.scenario.force, "go on where the disk seems to have too little room");
   add_jobs(command, a);
 }
 

@@ -96,6 +96,7 @@ std::vector<PandarRow> pandar_rows(const fs::path& csv, const std::vector<std::s
   std::vector<std::string> names;
   for (std::string line; std::getline(file, line);) {
     std::vector<std::string> fields;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
     std::istringstream in(line);
     for (std::string field; std::getline(in, field, ',');) fields.push_back(field);
     if (names.empty()) {

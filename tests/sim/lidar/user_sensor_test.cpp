@@ -150,7 +150,7 @@ TEST_F(UserSensor, ImpossibleStatesAreRefusedWithLineAndField) {
   expect_in(complaint(start + state("0, 1, 50") + state("0, 1, 2")), {"mine.yaml:13", "take 50 us", "after 50 us"});
   expect_in(complaint(start + state("30, 40, 70") + state("5, 6, 7")), {"mine.yaml:14", "before the state before it"});
   expect_in(complaint(start + state("5, 6, 7") + state("40, 50, 60")), {"mine.yaml:13", "before the state before it"});
-  expect_in(complaint(start + state("0, 1, -1")), {"mine.yaml:13", "channel 2 fires in none"});
+  expect_in(complaint(start + state("0, 1, -1")), {"mine.yaml:12", "channel 2 fires in none"});
   expect_in(complaint(start + state("0, .nan, 1")), {"mine.yaml:13", "firing_us", "finite"});
   expect_in(complaint(start + state("0, 1, 2") + "firing_us: [0, 1, 2]\n"), {"mine.yaml:14", "stands beside states"});
   expect_in(complaint(std::string(optics) + "elevation_deg: [0]\nazimuth_offset_cw_deg: [0]\ntiming: encoder\n" +
@@ -165,7 +165,7 @@ TEST_F(UserSensor, ImpossiblePrismsAreRefusedWithLineAndField) {
   expect_in(complaint(start + beam + speeds), {"mine.yaml", "prism_wedge_deg", "is missing"});
   expect_in(complaint(start + beam + speeds + "prism_wedge_deg: [18]\n"),
             {"mine.yaml:13", "prism_wedge_deg", "has 1 values", "two wedges"});
-  expect_in(complaint(start + beam + speeds + "prism_wedge_deg: [45, 45]\n"),
+  expect_in(complaint(start + beam + speeds + "prism_wedge_deg: [55, 55]\n"),
             {"mine.yaml:13", "prism_wedge_deg", "let no light out", "0 degrees apart"});
   expect_in(complaint(start + beam + speeds + "prism_wedge_deg: [90, 5]\n"), {"mine.yaml:13", "below 60"});
   expect_in(complaint(start + "elevation_deg: [0, 1]\nazimuth_offset_cw_deg: [0, 0]\n" + speeds +
