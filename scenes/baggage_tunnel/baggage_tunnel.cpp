@@ -30,7 +30,8 @@ struct Site {
 /// A bar along the left wall that leaves the side corridor's mouth free.
 void sweep_left(MeshBuilder& b, const Site& s, const std::vector<Vector2d>& outline) {
   add_swept(b, s.ground, s.l.line, 0, s.mouth_begin_m(), outline, sweep_step_m);
-  if (s.options.with_junction) add_swept(b, s.ground, s.l.line, s.mouth_end_m(), s.l.line.length_m(), outline, sweep_step_m);
+  if (s.options.with_junction)
+    add_swept(b, s.ground, s.l.line, s.mouth_end_m(), s.l.line.length_m(), outline, sweep_step_m);
 }
 
 void sweep(MeshBuilder& b, const Site& s, const std::vector<Vector2d>& outline) {
@@ -69,7 +70,8 @@ void add_structure(Assembly& a, const Site& s) {
     walls.use(tunnel_concrete);
     for (const double side : {-1.0, 1.0}) {
       const double d0 = side * l.side_half_m, d1 = side * (l.side_half_m + w);
-      add_swept(walls, s.ground, l.side, l.half_m + 0.02, l.side.length_m() + w, rectangle_outline(d0, low, d1, high), 2);
+      add_swept(walls, s.ground, l.side, l.half_m + 0.02, l.side.length_m() + w, rectangle_outline(d0, low, d1, high),
+                2);
     }
     add_swept(roof, s.ground, l.side, l.half_m, l.side.length_m() + w,
               rectangle_outline(-l.side_half_m - w, l.height_m, l.side_half_m + w, l.height_m + 0.3), 2);
@@ -112,8 +114,7 @@ void add_trays(Assembly& a, const Site& s) {
                  const double tray = std::max(2.5, h - 0.6);
                  sweep(b, s, rectangle_outline(half - 0.5, tray, half - 0.1, tray + 0.06));
                  b.use(tyre_rubber);  // cables
-                 for (const double d : {0.42, 0.34, 0.22})
-                   sweep(b, s, circle_outline(half - d, tray + 0.08, 0.025, 6));
+                 for (const double d : {0.42, 0.34, 0.22}) sweep(b, s, circle_outline(half - d, tray + 0.08, 0.025, 6));
                  b.use(painted_steel);
                  sweep(b, s, circle_outline(-half + 0.22, h - 0.3, 0.09, 12));
                  sweep(b, s, circle_outline(-half + 0.45, h - 0.25, 0.06, 10));
@@ -137,7 +138,8 @@ void add_lamps(Assembly& a, const Site& s) {
                  const double h = s.options.height_m, length = s.l.line.length_m();
                  for (double at = 3; at + 1.2 < length; at += 6) {
                    b.use(light_lens);
-                   add_swept(b, s.ground, s.l.line, at, at + 1.2, rectangle_outline(-0.1, h - 0.08, 0.1, h + 0.02), 0.6);
+                   add_swept(b, s.ground, s.l.line, at, at + 1.2, rectangle_outline(-0.1, h - 0.08, 0.1, h + 0.02),
+                             0.6);
                  }
                }),
         Label::light);

@@ -87,7 +87,8 @@ void add_roller_door(MeshBuilder& b, double width_m, double height_m) {
   for (double z = slat_m; z < height_m - 0.05; z += slat_m) add_box(b, {0.02, -h, z - 0.015}, {0.045, h, z + 0.015});
   b.use(galvanised_steel);
   for (const double side : {-1.0, 1.0})
-    add_box(b, {-0.05, std::min(side * h, side * (h + 0.12)), -0.1}, {0.1, std::max(side * h, side * (h + 0.12)), height_m});
+    add_box(b, {-0.05, std::min(side * h, side * (h + 0.12)), -0.1},
+            {0.1, std::max(side * h, side * (h + 0.12)), height_m});
   add_box(b, {-0.05, -h - 0.12, height_m}, {0.12, h + 0.12, height_m + 0.2});
 }
 

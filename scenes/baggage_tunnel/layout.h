@@ -1,5 +1,5 @@
-/// Where things are in the baggage tunnel. The hall's doorway is the origin: the hall lies to the west, the tunnel begins
-/// eastwards, turns north, and east again.
+/// Where things are in the baggage tunnel. The hall's doorway is the origin: the hall lies to the west, the tunnel
+/// begins eastwards, turns north, and east again.
 #pragma once
 
 #include <memory>
@@ -13,16 +13,16 @@ namespace tarmac::scenes {
 struct BaggageTunnelLayout {
   explicit BaggageTunnelLayout(const BaggageTunnelOptions& options);
 
-  double half_m, height_m;       ///< tunnel
-  double wall_m = 0.3;           ///< thickness of walls and slabs
-  CentreLine line;               ///< of the tunnel, from the doorway to the roller door at its end
-  double turn_blend_m = 4;       ///< of both turns
-  double first_leg_m, turn_m;    ///< lengths along the line
-  double junction_m;             ///< along the line: middle of the side corridor's mouth
+  double half_m, height_m;                     ///< tunnel
+  double wall_m = 0.3;                         ///< thickness of walls and slabs
+  CentreLine line;                             ///< of the tunnel, from the doorway to the roller door at its end
+  static constexpr double turn_blend_m = 4;    ///< of both turns
+  double first_leg_m, turn_m;                  ///< lengths along the line
+  double junction_m;                           ///< along the line: middle of the side corridor's mouth
   double side_half_m = 2, side_length_m = 12;  ///< side corridor
-  CentreLine side;               ///< its centre line, from the tunnel's axis to its roller door
+  CentreLine side;                             ///< its centre line, from the tunnel's axis to its roller door
   double hall_length_m, hall_half_m;
-  double ramp_begin_m = 10;      ///< x where the ramp down begins
+  static constexpr double ramp_begin_m = 10;  ///< x where the ramp down begins
 };
 
 std::shared_ptr<const SectionGround> baggage_ground(const BaggageTunnelOptions& options, std::uint64_t seed);

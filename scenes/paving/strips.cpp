@@ -119,8 +119,7 @@ std::vector<double> StripMesher::lines_across(double right_d_m, double left_d_m)
   for (const double s : places(stations_m_.front(), stations_m_.back(), std::clamp(length_m / 60, 1.0, 10.0))) {
     const CentreLine::Point at = line_->at(s);
     for (std::size_t k = 0; k < most.places_m().size(); ++k) {
-      const Curvatures c =
-          curvatures(*ground_, at.p_m + most.places_m()[k] * at.left, at.tangent, at.left);
+      const Curvatures c = curvatures(*ground_, at.p_m + most.places_m()[k] * at.left, at.tangent, at.left);
       most.add(k, c.across + c.mixed);
     }
   }
@@ -185,8 +184,8 @@ void add_ground_region(MeshBuilder& b, const Ground& ground, const Vector2d& low
     std::vector<double> list{ends.front()};
     for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
       if (ends[k + 1] - ends[k] < 1e-6) continue;
-      const std::vector<double> part = chord_steps(ends[k], ends[k + 1], most, share_of_sagitta * tolerance.sagitta_m,
-                                                   tolerance.max_cell_m);
+      const std::vector<double> part =
+          chord_steps(ends[k], ends[k + 1], most, share_of_sagitta * tolerance.sagitta_m, tolerance.max_cell_m);
       list.insert(list.end(), part.begin() + 1, part.end());
     }
     return list;
@@ -225,8 +224,9 @@ Fillet fillet(const Vector2d& corner, const Vector2d& start, const Vector2d& end
 /// Between two legs that meet at `knee` and the arc: rays from points of the legs to points of the arc, cut into cells.
 void fill_to_arc(MeshBuilder& b, const Ground& ground, const Fillet& f, const Vector2d& touch0, const Vector2d& knee,
                  const Vector2d& touch1, double most_curved, bool facing_left, const MeshTolerance& tolerance) {
-  const double cell = std::clamp(most_curved > 0 ? std::sqrt(4 * tolerance.sagitta_m / most_curved) : tolerance.max_cell_m,
-                                 0.3, tolerance.max_cell_m);
+  const double cell =
+      std::clamp(most_curved > 0 ? std::sqrt(4 * tolerance.sagitta_m / most_curved) : tolerance.max_cell_m, 0.3,
+                 tolerance.max_cell_m);
   const int half = std::max(2, static_cast<int>(std::ceil((knee - touch0).norm() / cell)));
   const int rows = std::max(1, static_cast<int>(std::ceil((f.arc(0.5) - knee).norm() / cell)));
   const auto leg = [&](int k) -> Vector2d {
@@ -257,8 +257,7 @@ double most_curved(const Ground& ground, const Vector2d& corner, const Vector2d&
   constexpr int n = 12;
   for (int i = 0; i <= n; ++i) {
     for (int j = 0; j <= n; ++j) {
-      const Curvatures c =
-          curvatures(ground, corner + (i * leg0 + j * leg1) / n, leg0.normalized(), leg1.normalized());
+      const Curvatures c = curvatures(ground, corner + (i * leg0 + j * leg1) / n, leg0.normalized(), leg1.normalized());
       most = std::max(most, c.along + c.across + 2 * c.mixed);
     }
   }

@@ -42,8 +42,8 @@ class StripMesher {
 
 /// Which cells to leave out: the rectangle [low, high] of a cell.
 using CellFilter = std::function<bool(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m)>;
-/// The ground over the rectangle [low_m, high_m], `lift_m` above it, facing up; cells for which `keep` is false are left
-/// out. Cells are cut at `cuts_x_m` and `cuts_y_m` too, so that a filter may follow straight edges exactly.
+/// The ground over the rectangle [low_m, high_m], `lift_m` above it, facing up; cells for which `keep` is false are
+/// left out. Cells are cut at `cuts_x_m` and `cuts_y_m` too, so that a filter may follow straight edges exactly.
 void add_ground_region(MeshBuilder& b, const Ground& ground, const Eigen::Vector2d& low_m,
                        const Eigen::Vector2d& high_m, const MeshTolerance& tolerance = {}, const CellFilter& keep = {},
                        double lift_m = 0, const std::vector<double>& cuts_x_m = {},

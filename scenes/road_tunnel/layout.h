@@ -11,15 +11,15 @@ namespace tarmac::scenes {
 struct RoadTunnelLayout {
   explicit RoadTunnelLayout(const RoadTunnelOptions& options);
 
-  double half_m;         ///< half the width between the walls
-  double height_m;       ///< of the box
-  double portal_m;       ///< x of the eastern portal
-  double depth_m;        ///< of the road below the land, inside
+  double half_m;                    ///< half the width between the walls
+  double height_m;                  ///< of the box
+  double portal_m;                  ///< x of the eastern portal
+  double depth_m;                   ///< of the road below the land, inside
   double ramp_foot_m, ramp_head_m;  ///< x where the ramp would begin and end without rounding
-  double wall_end_m;     ///< the retaining walls end here
-  double road_end_m;     ///< the road, and the land
-  double rounding_m;     ///< of the grade's changes (RoundedProfile)
-  double land_half_m = 110;   ///< the land reaches from -this to this along y
+  double wall_end_m;                ///< the retaining walls end here
+  double road_end_m;                ///< the road, and the land
+  double rounding_m;                ///< of the grade's changes (RoundedProfile)
+  double land_half_m = 110;         ///< the land reaches from -this to this along y
   double wall_m = 0.4, roof_m = 0.9, parapet_m = 0.9;
   double taxiway_half_m = 11.5, taxiway_shoulder_m = 19;
 };

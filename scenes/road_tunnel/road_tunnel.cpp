@@ -254,7 +254,8 @@ const SceneEntry road_tunnel{
       return std::make_shared<RoadTunnelGround>(read(node), seed);
     },
     .describe = [] { return core::describe_options<RoadTunnelOptions>(); },
-    .resolve = [](const core::ConfigNode& node) { return "  kind: road-tunnel\n" + core::write_options(read(node), 2); },
+    .resolve =
+        [](const core::ConfigNode& node) { return "  kind: road-tunnel\n" + core::write_options(read(node), 2); },
 };
 
 }  // namespace tarmac::scenes

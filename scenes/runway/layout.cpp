@@ -34,8 +34,7 @@ std::vector<Rectangle> RunwayLayout::pavements() const {
 std::vector<RunwayLayout::Corner> RunwayLayout::corners() const {
   std::vector<Corner> list;
   for (const double x : {-1.0, 1.0}) {
-    for (const double y : {-1.0, 1.0})
-      list.push_back({{x * taxiway.shoulder_m, y * shoulder_m}, {x, 0}, {0, y}});
+    for (const double y : {-1.0, 1.0}) list.push_back({{x * taxiway.shoulder_m, y * shoulder_m}, {x, 0}, {0, y}});
   }
   return list;
 }

@@ -19,18 +19,18 @@ struct Rectangle {
 struct RunwayLayout {
   explicit RunwayLayout(const RunwayOptions& options);
 
-  double half_m, shoulder_m;    ///< runway: edge, and outer edge of its shoulder
-  double west_m, east_m;        ///< ends of its pavement
-  double threshold_m;           ///< x of the threshold
+  double half_m, shoulder_m;  ///< runway: edge, and outer edge of its shoulder
+  double west_m, east_m;      ///< ends of its pavement
+  double threshold_m;         ///< x of the threshold
   TaxiwaySection taxiway;
-  double south_m, north_m;      ///< ends of the taxiway
-  double fillet_m;              ///< radius
-  double hold_m;                ///< distance of the holding positions
-  double road_y_m;              ///< middle of the road
-  double road_half_m = 4;       ///< half its width
-  double road_reach_m = 150;    ///< it runs from -reach to reach
+  double south_m, north_m;    ///< ends of the taxiway
+  double fillet_m;            ///< radius
+  double hold_m;              ///< distance of the holding positions
+  double road_y_m;            ///< middle of the road
+  double road_half_m = 4;     ///< half its width
+  double road_reach_m = 150;  ///< it runs from -reach to reach
   bool has_road;
-  Rectangle field;              ///< all of the ground
+  Rectangle field;  ///< all of the ground
 
   /// All pavement but the fillets: runway, taxiway south and north of it, road west and east of the taxiway.
   std::vector<Rectangle> pavements() const;

@@ -1,9 +1,8 @@
-#include "scenes/runway/parts.h"
-
 #include <cmath>
 #include <numbers>
 
 #include "scenes/paving/ground_painter.h"
+#include "scenes/runway/parts.h"
 
 namespace tarmac::scenes {
 
@@ -11,8 +10,6 @@ using Eigen::Vector2d;
 using enum MaterialId;
 
 namespace {
-
-
 
 void runway(GroundPainter& p, const RunwayLayout& l) {
   p.use(paint_white_marking).layer(0);
@@ -54,8 +51,7 @@ void holding_position(GroundPainter& p, const RunwayLayout& l, double towards_ru
 
 void taxiway(GroundPainter& p, const RunwayLayout& l) {
   p.use(paint_yellow_marking);
-  for (const auto& [from, to, towards] :
-       {std::tuple{l.south_m, -l.half_m - 1, 1.0}, {l.north_m, l.half_m + 1, -1.0}}) {
+  for (const auto& [from, to, towards] : {std::tuple{l.south_m, -l.half_m - 1, 1.0}, {l.north_m, l.half_m + 1, -1.0}}) {
     p.layer(1).line({{0, from}, {0, to}}, 0.3);
     for (const double side : {-1.0, 1.0}) {
       for (const double inward : {0.1, 0.4}) {

@@ -67,9 +67,8 @@ void add_lights(Assembly& a, const RunwayLayout& l, const RunwayOptions& options
   const std::uint32_t inset = a.mesh("inset_light", [](MeshBuilder& b) { add_inset_light(b, light_lens); });
   const double free = l.taxiway.shoulder_m + l.fillet_m;  // inset where aircraft turn off
   for (const double side : {-1.0, 1.0}) {
-    spaced(l.threshold_m, l.east_m - 2, options.edge_light_spacing_m, [&](double x) {
-      a.stand(std::abs(x) < free ? inset : edge, Label::light, x, side * (l.half_m + 1.5), 0);
-    });
+    spaced(l.threshold_m, l.east_m - 2, options.edge_light_spacing_m,
+           [&](double x) { a.stand(std::abs(x) < free ? inset : edge, Label::light, x, side * (l.half_m + 1.5), 0); });
     for (const double end : {l.south_m + 2, l.north_m - 2}) {
       const double sign = end < 0 ? -1 : 1;
       spaced(l.shoulder_m + l.fillet_m, std::abs(end), 50, [&](double y) {
@@ -133,8 +132,8 @@ void add_landing_aids(Assembly& a, const RunwayLayout& l, const RunwayOptions& o
     for (int k = 0; k < 4; ++k) a.found(unit, Label::light, x, l.half_m + 15 + 9.0 * k, pi);
   }
   if (options.with_windsock)
-    a.found(a.mesh("windsock", add_windsock), Label::mast, l.taxiway.shoulder_m + l.fillet_m + 28,
-            -l.shoulder_m - 38, -0.4);
+    a.found(a.mesh("windsock", add_windsock), Label::mast, l.taxiway.shoulder_m + l.fillet_m + 28, -l.shoulder_m - 38,
+            -0.4);
 }
 
 Scene make_runway_crossing(const RunwayOptions& options, std::uint64_t seed) {
@@ -166,11 +165,13 @@ RunwayOptions read(const core::ConfigNode& node) {
   const auto options = read_scene_options<RunwayOptions>(node);
   const RunwayLayout layout(options);
   if (layout.shoulder_m + layout.fillet_m + 10 > layout.hold_m)
-    node.fail_at("holding_distance_m", "leaves no straight between the fillets and the holding position; "
-                                       "move it out or choose a smaller fillet_radius_m");
+    node.fail_at("holding_distance_m",
+                 "leaves no straight between the fillets and the holding position; "
+                 "move it out or choose a smaller fillet_radius_m");
   if (layout.has_road && layout.road_y_m - 20 < layout.south_m)
-    node.fail_at("road_behind_hold_m", "puts the road within 20 m of the taxiway's southern end; "
-                                       "bring it nearer or lengthen taxiway_south_m");
+    node.fail_at("road_behind_hold_m",
+                 "puts the road within 20 m of the taxiway's southern end; "
+                 "bring it nearer or lengthen taxiway_south_m");
   return options;
 }
 

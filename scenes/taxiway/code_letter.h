@@ -7,7 +7,8 @@
 
 namespace tarmac::scenes {
 
-/// Widths and separations in metres; slopes in percent, upper limits. Sources: ICAO Annex 14 (2018) and EASA CS-ADR-DSN.
+/// Widths and separations in metres; slopes in percent, upper limits. Sources: ICAO Annex 14 (2018) and EASA
+/// CS-ADR-DSN.
 struct TaxiwayCode {
   char letter;
   double width_m;

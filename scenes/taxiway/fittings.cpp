@@ -137,9 +137,8 @@ void add_edge_light(MeshBuilder& b, MaterialId lens) {
 }
 
 void add_inset_light(MeshBuilder& b, MaterialId lens) {
-  add_upright_lathe(b, {{-0.05, 0.15, galvanised_steel}, {0.001, 0.15, galvanised_steel}, {0.013, 0.10, lens},
-                        {0.013, 0, lens}},
-                    14);
+  add_upright_lathe(
+      b, {{-0.05, 0.15, galvanised_steel}, {0.001, 0.15, galvanised_steel}, {0.013, 0.10, lens}, {0.013, 0, lens}}, 14);
 }
 
 void add_edge_marker(MeshBuilder& b) {

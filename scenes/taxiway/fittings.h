@@ -27,10 +27,10 @@ struct SignPanel {
 /// characters are retro-reflecting sheeting. Throws std::invalid_argument for a character that has no shape.
 void add_sign(MeshBuilder& b, const std::vector<SignPanel>& panels);
 
-void add_papi_unit(MeshBuilder& b);   ///< 0.9 wide, 1.1 long, 0.75 tall
-void add_windsock(MeshBuilder& b);    ///< mast of 6 m, sock of 3.6 m
-void add_catch_pit(MeshBuilder& b);   ///< concrete frame 1.0 m square with a grating
+void add_papi_unit(MeshBuilder& b);      ///< 0.9 wide, 1.1 long, 0.75 tall
+void add_windsock(MeshBuilder& b);       ///< mast of 6 m, sock of 3.6 m
+void add_catch_pit(MeshBuilder& b);      ///< concrete frame 1.0 m square with a grating
 void add_equipment_hut(MeshBuilder& b);  ///< 4 x 3 x 2.8
-void add_stop_sign(MeshBuilder& b);   ///< for roads: disc of 0.6 m at 2 m on a post
+void add_stop_sign(MeshBuilder& b);      ///< for roads: disc of 0.6 m at 2 m on a post
 
 }  // namespace tarmac::scenes

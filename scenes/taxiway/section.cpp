@@ -55,9 +55,9 @@ std::shared_ptr<const SectionGround> TaxiwayLayout::ground(const TaxiwayOptions&
   const double z_graded = z_shoulder - graded_percent / 100 * (s.graded_m - s.shoulder_m);
   std::vector<RoundedProfile::Point> half{{0, 0, 0.8}, {s.edge_m, z_edge, 0.3}};
   if (s.shoulder_m > s.edge_m) half.push_back({s.shoulder_m, z_shoulder, 0.3});
-  half.insert(half.end(), {{s.graded_m, z_graded, 0.4},
-                           {s.swale_m, z_graded - options.swale_depth_m, 0.5},
-                           {s.outer_m, z_graded, 0.4}});
+  half.insert(
+      half.end(),
+      {{s.graded_m, z_graded, 0.4}, {s.swale_m, z_graded - options.swale_depth_m, 0.5}, {s.outer_m, z_graded, 0.4}});
   std::vector<double> centres = taxiways_d_m_;
   std::sort(centres.begin(), centres.end());
   std::vector<RoundedProfile::Point> points{{centres.front() - s.outer_m - 5, z_graded}};

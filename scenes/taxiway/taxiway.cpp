@@ -30,7 +30,8 @@ struct Site {
   double length_m() const { return layout.line().length_m(); }
 };
 
-/// Pavement, and grass in strips beside it as far as strips reach; inside a bend the rest of the grass is a plane region.
+/// Pavement, and grass in strips beside it as far as strips reach; inside a bend the rest of the grass is a plane
+/// region.
 void add_surfaces(Assembly& a, const Site& site) {
   const TaxiwaySection& section = site.layout.section();
   const bool bend = site.layout.bend_end_m() > site.layout.bend_begin_m();
@@ -80,8 +81,8 @@ void add_markings(Assembly& a, const Site& site) {
     p.layer(1).line(line.offset_line(0, site.length_m(), d, step_m), wide ? 0.3 : 0.15);
     for (const double side : {-1.0, 1.0}) {  // two lines along each edge
       for (const double inward : {0.1, 0.4})
-        p.layer(0).line(line.offset_line(0, site.length_m(), d + side * (site.layout.section().edge_m - inward), step_m),
-                        0.15);
+        p.layer(0).line(
+            line.offset_line(0, site.length_m(), d + side * (site.layout.section().edge_m - inward), step_m), 0.15);
     }
   }
   a.put(a.mesh(std::move(p).build()), Label::marking);
@@ -135,8 +136,8 @@ void add_signs(Assembly& a, const Site& site) {
     const std::string number(1, static_cast<char>('1' + static_cast<int>(9 * random.uniform(k))));
     const std::string other = here[0] == 'A' ? "B" : "A";
     const std::uint32_t mesh = a.mesh("sign", [&](MeshBuilder& b) {
-      add_sign(b, {{here, SignStyle::location}, {other + number + (random.uniform(k, 1) < 0.5 ? "<" : ">"),
-                                                 SignStyle::direction}});
+      add_sign(b, {{here, SignStyle::location},
+                   {other + number + (random.uniform(k, 1) < 0.5 ? "<" : ">"), SignStyle::direction}});
     });
     ++k;
     const CentreLine::Point at = line.at(s);
@@ -174,7 +175,8 @@ void add_huts(Assembly& a, const Site& site) {
   const std::uint32_t hut = a.mesh("equipment_hut", add_equipment_hut);
   const CentreLine& line = site.layout.line();
   // On the right: inside a bend strips of grass have no room. Object-free up to 51 m from a centre line (code F).
-  const double nearest = site.right_edge_m() + site.layout.section().shoulder_m - 0.57 * site.layout.code().separation_m - 3;
+  const double nearest =
+      site.right_edge_m() + site.layout.section().shoulder_m - 0.57 * site.layout.code().separation_m - 3;
   for (int k = 0; k < site.options.huts; ++k) {
     const auto i = static_cast<std::uint64_t>(k);
     const double s = site.length_m() * (k + 0.2 + 0.6 * random.uniform(i, 0)) / site.options.huts;

@@ -18,6 +18,8 @@ using raycast::SweepTracer;
 constexpr double light_m_per_ns = 0.299792458;
 constexpr double halo_within_m = 30;
 constexpr float halo_from_signal = 30;
+// Outer rays are traced in portions of a fixed size: which rays share a packet may decide a tie between two triangles.
+constexpr std::size_t split_rays = 1024;
 constexpr std::uint32_t halo_slot = 15;  // beyond what a footprint's rays can make
 
 /// Where outer rays meet the plane that their centre ray met: t n'd = t0 n'd0, for they leave from one point.
@@ -88,7 +90,9 @@ BeamModel::BeamModel(const Profile& profile, const FiringTable& firing, const Ai
       detection_(profile, 0, "strength"),
       body_(std::move(body)),
       scene_(std::move(scene)),
-      range_offset_m_(firing.range_offset_m()) {
+      range_offset_m_(firing.range_offset_m()),
+      split_cycles_(std::max<std::size_t>(1, split_rays / (SweepTracer::tile * firing.channels())) *
+                    SweepTracer::tile) {
   for (const scenes::Material& m : scene_->materials) {
     relief_material_.push_back(scene_->relief && m.has_relief);
     pane_material_.push_back(options.glass && m.transmission > 0);
@@ -113,15 +117,15 @@ void BeamModel::echoes(const FiringTable& firing, const Aim& aim, const SweepSpa
   w.echoes.resize(cycles * channels);
   w.traced_rays = w.centre.size();
   w.split_beams = 0;
-  const auto for_batches = [&](const auto& work) {
-    for (std::size_t first = 0; first < cycles; first += batches.cycles) {
-      aim.cycles(firing, span, motion, static_cast<std::int64_t>(first), std::min(batches.cycles, cycles - first),
-                 tracer.base(), w.aimed);
+  const auto for_batches = [&](std::size_t size, const auto& work) {
+    for (std::size_t first = 0; first < cycles; first += size) {
+      aim.cycles(firing, span, motion, static_cast<std::int64_t>(first), std::min(size, cycles - first), tracer.base(),
+                 w.aimed);
       aim.rays(firing, w.aimed, w.rays);
       work(first);
     }
   };
-  for_batches([&](std::size_t first) {
+  for_batches(batches.cycles, [&](std::size_t first) {
     const double before_s = thread_cpu_s();
     if (w.aimed.cycles.size() == batches.cycles)
       tracer.trace(w.rays, batches.tiles, w.hits);
@@ -139,7 +143,7 @@ void BeamModel::echoes(const FiringTable& firing, const Aim& aim, const SweepSpa
   } else {
     w.settled.assign(w.centre.size(), 0);
   }
-  for_batches([&](std::size_t first) {
+  for_batches(split_cycles_, [&](std::size_t first) {
     w.blocked.assign(w.rays.size(), 0);
     if (body_) meet_own_body(firing, aim, span, motion, static_cast<std::int64_t>(first), first * channels, w);
     point_outer(aim, w);

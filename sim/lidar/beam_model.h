@@ -85,6 +85,7 @@ class BeamModel {
   Neighbours neighbours_;
   std::vector<std::vector<Beside>> beside_;
   double range_offset_m_;
+  std::size_t split_cycles_;
 };
 
 }  // namespace tarmac::sim::lidar

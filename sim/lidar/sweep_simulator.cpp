@@ -51,7 +51,7 @@ void resize(SimulatedSweep& out, std::size_t n, bool point_truth) {
   s.t_ns.resize(n);
   s.ring.resize(n);
   out.instance.resize(n);
-  out.kind.assign(n, truth::ReturnKind::surface);
+  out.kind.resize(n, truth::ReturnKind::surface);
   const std::size_t asked = point_truth ? n : 0;
   out.true_range_m.resize(asked);
   for (auto* v : {&out.normal_x, &out.normal_y, &out.normal_z, &out.cos_incidence}) v->resize(asked);
@@ -122,6 +122,7 @@ void SweepSimulator::sweep(std::int64_t index, Workspace& w, SimulatedSweep& out
   out.sweep.sensor = mounting_.sensor;
   out.rays = static_cast<std::size_t>(span.cycles) * firing_.channels();
   out.trace_cpu_s = 0;
+  out.kind.clear();  // what is not told otherwise is a surface
   beyond_ ? sweep_beams(span, w, out) : sweep_lines(span, w, out);
 }
 

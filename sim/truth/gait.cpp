@@ -39,7 +39,8 @@ Jet StepPhase::at(const Jet& s) const {
   return (1 / step_length_m_) * (s + chain(drift_m_.at(s.f), s));
 }
 
-Gait::Gait(const GaitOptions& gait, std::uint64_t seed) : full_speed_m_s_(gait.full_speed_m_s) {
+Gait::Gait(const GaitOptions& gait, std::uint64_t seed)
+    : full_speed_m_s_(gait.full_speed_m_s), uneven_(0.15, 5, 30, 4, core::RandomStream(seed, "motion/uneven_steps")) {
   const core::RandomStream random(seed, "motion/gait");
   const auto add = [&](double cycles, int axis, double amplitude) {
     const double phase = two_pi * random.uniform(tones_.size());
@@ -78,7 +79,8 @@ Swing Gait::at(const Jet& phase, const Jet& share) const {
       swing[axis] = swing[axis] + tone.sine[axis] * wave.sin + tone.cosine[axis] * wave.cos;
     }
   }
-  for (Jet& axis : swing) axis = share * axis;
+  const Jet strength = share * (Jet{1} + chain(uneven_.at(phase.f), phase));
+  for (Jet& axis : swing) axis = strength * axis;
   return swing;
 }
 

@@ -23,7 +23,7 @@ scenes::Scene step(double gap_m) {
   scenes::Scene scene = tests::empty_scene();
   scene.materials = {tests::grey(0.3), tests::grey(0.6)};
   add_wall(scene, near_m, edge_y_m, 8, 3, 0);
-  add_wall(scene, near_m + gap_m, -8, 20, 3, 1, scenes::Label::vehicle);
+  add_wall(scene, near_m + gap_m, -8, 20, 6, 1, scenes::Label::vehicle);
   return scene;
 }
 
@@ -116,9 +116,6 @@ TEST(Footprint, WallsThirtyCentimetresApartMakeOneMixedPointThatLeansToTheStrong
 
 TEST(Footprint, WallsThreeMetresApartAreTwoEchoesEachWithItsShare) {
   constexpr double gap_m = 3;
-  struct Count {
-    std::size_t edges = 0;
-  };
   for (const std::string returns : {"first", "last", "strongest"}) {
     const SweepSimulator simulator = simulator_of(sensor, mode, step(gap_m), asking(seven(returns)), no_noise());
     const SimulatedSweep s = simulator.sweep(0);
@@ -168,7 +165,6 @@ TEST(Footprint, DualReturnsAreTwoPointsOfOneFiringStrongestFirst) {
     const bool near_first = detection.snr(e.near_signal, t_near) > detection.snr(e.far_signal, t_far);
     EXPECT_NEAR(range_of(s, beam.points[0]), near_first ? t_near : t_far, 1e-6);
     EXPECT_NEAR(range_of(s, beam.points[1]), near_first ? t_far : t_near, 1e-6);
-    for (const std::size_t i : beam.points) EXPECT_NEAR(s.sweep.point(i).norm(), s.true_range_m[i], 1e-3);
   }
   EXPECT_GT(pairs, 20u);
   EXPECT_TRUE(std::is_sorted(s.sweep.t_ns.begin(), s.sweep.t_ns.end()));

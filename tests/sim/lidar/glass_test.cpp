@@ -17,17 +17,29 @@ constexpr double rad = M_PI / 180;
 constexpr const char* sensor = "ouster-os1-64-gen2";
 const Mode mode{1024, 10};
 
+/// Fresnel by the angles outside and inside: sines and tangents, where the code has cosines and the index.
+struct Face {
+  double s, p;
+};
+Face face_of(double angle_deg) {
+  const double out = std::max(1e-4, angle_deg * rad), in = std::asin(std::sin(out) / 1.52);
+  return {std::pow(std::sin(out - in) / std::sin(out + in), 2), std::pow(std::tan(out - in) / std::tan(out + in), 2)};
+}
+
 TEST(Pane, SharesAreFresnelsOfTwoFaces) {
-  // Angle, reflected, transmitted: two faces of n = 1.52, unpolarised, no absorption, to three digits.
-  const double table[][3] = {{0, .082, .918},  {30, .085, .915}, {45, .101, .899}, {60, .169, .831},
-                             {70, .297, .703}, {75, .409, .591}, {80, .562, .438}, {85, .762, .238}};
-  for (const auto& [angle_deg, reflected, transmitted] : table) {
+  // Angle and reflectance of one face of n = 1.52, unpolarised, to three digits.
+  const double table[][2] = {{0, .043},  {30, .044}, {45, .053}, {60, .092},
+                             {70, .175}, {75, .257}, {80, .391}, {85, .615}};
+  const auto pane_of = [](double face) { return 2 * face / (1 + face); };
+  for (const auto& [angle_deg, reflected] : table) {
+    const Face face = face_of(angle_deg);
+    EXPECT_NEAR((face.s + face.p) / 2, reflected, 6e-4) << angle_deg;
     const PaneShares clear = clear_pane(std::cos(angle_deg * rad));
-    EXPECT_NEAR(clear.reflected, reflected, 6e-4) << angle_deg;
-    EXPECT_NEAR(clear.transmitted, transmitted, 6e-4) << angle_deg;
+    EXPECT_NEAR(clear.reflected, (pane_of(face.s) + pane_of(face.p)) / 2, 1e-6) << angle_deg;
+    EXPECT_NEAR(clear.reflected + clear.transmitted, 1, 1e-12);
     // The clear pane's material has the face's reflectance and the pane's transmission.
-    const PaneShares material =
-        pane_shares(pane(std::pow(0.52 / 2.52, 2), clear_pane(1).transmitted), std::cos(angle_deg * rad));
+    const scenes::Material clear_glass = pane(std::pow(0.52 / 2.52, 2), clear_pane(1).transmitted);
+    const PaneShares material = pane_shares(clear_glass, std::cos(angle_deg * rad));
     EXPECT_NEAR(material.reflected, clear.reflected, 1e-12);
     EXPECT_NEAR(material.transmitted, clear.transmitted, 1e-12);
   }
@@ -66,7 +78,7 @@ scenes::Scene room(bool behind, bool mirrored) {
 /// Through the pane, and not so square on that it shines.
 bool slanted(const Vector3d& d) {
   const double cosine = d.x();
-  return cosine > 0.8 && cosine < std::cos(3 * rad) && std::abs(10 * d.y() / d.x()) < 5.5 &&
+  return cosine > 0.8 && cosine < std::cos(8 * rad) && std::abs(10 * d.y() / d.x()) < 5.5 &&
          std::abs(10 * d.z() / d.x()) < 2.7;
 }
 
@@ -146,7 +158,8 @@ TEST(Glass, ShinesWhereItIsSeenSquareOn) {
   for (std::size_t i = 0; i < s.sweep.size(); ++i) {
     if (s.kind[i] != ReturnKind::glint) continue;
     ++glints;
-    EXPECT_LT(std::acos(s.sweep.point(i).normalized().x()), 3 * rad);
+    // There the lobe, F0 alpha^2 / (4 theta^4), falls below the dirt's 0.5 %; alpha = 3.8 mrad with bow and beam width.
+    EXPECT_LT(std::acos(s.sweep.point(i).normalized().x()), 7 * rad);
     EXPECT_NEAR(s.sweep.point(i).x(), 10, 1e-4);
   }
   EXPECT_GT(glints, 0u);

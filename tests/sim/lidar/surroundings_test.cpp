@@ -203,7 +203,7 @@ TEST(Everything, IsTheSameHoweverBatchesAreCutAndInWhateverOrderSweepsAreMade) {
 
 TEST(Everything, ShowsEveryKindOfReturn) {
   const SweepSimulator simulator =
-      simulator_of(sensor, {}, everything_scene(), everything(), {}, 5, {}, tests::pose({1.2, 0, 2.0}));
+      simulator_of(sensor, mode, everything_scene(), everything(), {}, 5, {}, tests::pose({1.2, 0, 2.0}));
   const SimulatedSweep s = simulator.sweep(0);
   for (const ReturnKind kind : {ReturnKind::surface, ReturnKind::mixed, ReturnKind::edge, ReturnKind::dirt,
                                 ReturnKind::transmitted, ReturnKind::ghost, ReturnKind::glint, ReturnKind::retro_halo,
