@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -167,37 +168,57 @@ void clear_truth(const std::filesystem::path& folder) {
   }
 }
 
-/// Samples as they are recorded, with the errors that the device had.
-SynthesizedImu make_imu(Setup& setup, const SimulationInput& input) {
-  if (!setup.rig.has_imu) return {};
+struct WrittenImu {
+  std::size_t samples = 0;
+  RealisedImuErrors errors;
+};
+
+/// Samples as they are recorded, a second at a time.
+WrittenImu write_imu(Setup& setup, const SimulationInput& input, RecordingWriter& recording) {
+  WrittenImu written;
+  if (!setup.rig.has_imu) return written;
   const Time end = std::min(Time(input.duration), input.motion->end());
   ImuOptions mounted = setup.rig.imu;
   mounted.T_body_imu = setup.truth.imus[0].T_body_imu;
-  SynthesizedImu imu = synthesize_imu(*input.motion, mounted, setup.rig.gravity_m_s2, Time{}, end, input.seed, "imu0");
-  const std::size_t lost = faults::apply_imu_faults(setup.faults.imu, input.seed, "imu0", imu.samples);
-  for (truth::Fault& fault : faults::imu_log(setup.faults.imu, lost, imu.samples.size() + lost, "imu0"))
+  ImuSynthesis imu(*input.motion, mounted, setup.rig.gravity_m_s2, Time{}, end, input.seed, "imu0");
+  faults::ImuFaults faults(setup.faults.imu, input.seed, "imu0");
+  const std::size_t second = std::max<std::size_t>(1, static_cast<std::size_t>(setup.rig.imu.rate_hz));
+  std::vector<ImuSample> chunk;
+  const auto flush = [&] {
+    recording.write(0, chunk);
+    written.samples += chunk.size();
+    chunk.clear();
+  };
+  while (const std::optional<ImuSample> sample = imu.next()) {
+    if (const std::optional<ImuSample> recorded = faults.next(*sample)) chunk.push_back(*recorded);
+    if (chunk.size() == second) flush();
+  }
+  flush();
+  for (truth::Fault& fault : faults::imu_log(setup.faults.imu, faults.lost(), written.samples + faults.lost(), "imu0"))
     setup.log.push_back(std::move(fault));
-  return imu;
-}
-
-std::size_t write_imu(const RigOptions& options, const std::vector<ImuSample>& samples, RecordingWriter& recording) {
-  const std::size_t chunk = std::max<std::size_t>(1, static_cast<std::size_t>(options.imu.rate_hz));  // a second each
-  for (std::size_t i = 0; i < samples.size(); i += chunk)
-    recording.write(0, std::span(samples).subspan(i, std::min(chunk, samples.size() - i)));
-  return samples.size();
+  written.errors = imu.errors();
+  return written;
 }
 
 }  // namespace
 
-Workload workload_of(const ConfigNode& rig, Duration duration) {
+Workload workload_of(const ConfigNode& rig, Duration duration, bool point_truth) {
+  // Measured on the stand, compressed: a point of the recording with its label, the same with its truth, an IMU sample,
+  // a line of truth.tum.
+  constexpr double point_bytes = 11, point_truth_bytes = 18, imu_bytes = 46, tum_bytes_per_s = 118e3;
   const RigOptions options = read_rig(rig);
   Workload work;
   for (std::size_t k = 0; k < options.lidars.size(); ++k) {
     const lidar::FiringTable firing = firing_table(options, 1, k);
     const auto sweeps = static_cast<std::size_t>(std::max<std::int64_t>(0, firing.sweeps_until(Time(duration))));
     work.sweeps += sweeps;
-    work.rays += sweeps * static_cast<std::size_t>(firing.sweep(0).cycles) * firing.channels();
+    const std::size_t rays = sweeps * static_cast<std::size_t>(firing.sweep(0).cycles) * firing.channels();
+    const double points = static_cast<double>(rays) * (options.lidars[k].beam.dual() ? 1.3 : 1);  // few have two returns
+    work.rays += rays;
+    work.bytes += (point_bytes + (point_truth ? point_truth_bytes : 0)) * points;
   }
+  work.bytes += tum_bytes_per_s * to_s(duration);
+  if (options.has_imu) work.bytes += imu_bytes * options.imu.rate_hz * to_s(duration);
   return work;
 }
 
@@ -220,9 +241,9 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   const std::vector<LidarRun> lidars = make_lidars(setup, input, tracer);
   std::int64_t count = 0;
   for (const LidarRun& lidar : lidars) count += lidar.sweeps;
-  const SynthesizedImu imu = make_imu(setup, input);
 
   RecordingWriter recording(recording_folder, setup.sheet);
+  const WrittenImu imu = write_imu(setup, input, recording);
   clear_truth(truth_folder);
   truth::write_truth(truth_folder, input.resolved_scenario, input.resolved_motion, *input.motion, setup.truth,
                      setup.log);
@@ -234,7 +255,7 @@ SimulationSummary simulate(const SimulationInput& input, const SimulationSetting
   const PipelineTotals totals = run_lidars(lidars, *input.scene, threads, recording, truth_folder, after_sweep);
 
   SimulationSummary summary;
-  summary.imu_samples = options.has_imu ? write_imu(options, imu.samples, recording) : 0;
+  summary.imu_samples = imu.samples;
   summary.recording_hash = recording.finish();
   summary.sweeps = totals.sweeps;
   summary.rays = totals.rays;

@@ -46,11 +46,13 @@ struct SimulationSummary {
   int threads = 1;              ///< that were used: as asked for, at most the processors there are
 };
 
-/// How much a drive is, before it is simulated.
+/// How much a drive is, before it is simulated. `bytes`: what recording and truth about take on the disk where most beams
+/// return something; open skies take less.
 struct Workload {
   std::size_t sweeps = 0, rays = 0;
+  double bytes = 0;
 };
-Workload workload_of(const core::ConfigNode& rig, core::Duration duration);
+Workload workload_of(const core::ConfigNode& rig, core::Duration duration, bool point_truth = false);
 
 /// Throws InputError when simulate() would refuse the input.
 void check(const SimulationInput& input);

@@ -45,8 +45,8 @@ Vector3d Prism::behind(const std::array<double, 2>& turns) const {
   Vector3d d(1, 0, 0);
   for (std::size_t i = 0; i < 2; ++i) {
     const double angle = 2 * std::numbers::pi * (turns[i] - std::floor(turns[i]));
-    const Vector3d slanted(-wedges_[i].cos_slant, wedges_[i].sin_slant * std::cos(angle),
-                           wedges_[i].sin_slant * std::sin(angle));
+    const Vector3d slanted(-wedges_[i].cos_slant, -wedges_[i].sin_slant * std::cos(angle),
+                           -wedges_[i].sin_slant * std::sin(angle));
     d = refracted(refracted(d, slanted, 1 / index_), square, index_);
   }
   return d.normalized();

@@ -19,8 +19,8 @@ class Prism {
   /// Throws InputError when some position of the wedges lets no light out (total reflection) or turns it backwards.
   explicit Prism(const Profile& profile);
 
-  /// Unit vector in the sensor frame (x forward, y left, z up), `t_ns` after the recording's begin. Wedge i's slanted
-  /// face leans towards angle start_i + 360 hz_i t, counted from y to z.
+  /// Unit vector in the sensor frame (x forward, y left, z up), `t_ns` after the recording's begin. Wedge i bends the
+  /// beam towards angle start_i + 360 hz_i t, counted from y to z.
   Eigen::Vector3d direction(double t_ns) const;
 
  private:

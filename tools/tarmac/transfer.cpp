@@ -40,7 +40,9 @@ std::vector<io::StampedPose> poses_at_mid_sweep(const core::Estimate& estimate, 
           "{}: sweep {} has no pose, and KITTI's poses.txt needs one a sweep; export as tum, or the recording alone",
           estimate.estimator, sweep.index));
     }
-    poses.push_back({middle, estimate.headline().pose(middle) * rig.lidars.at(0).T_body_lidar});
+    // Of several LiDARs the clouds are merged, in the body's frame.
+    const core::SE3 T_body_cloud = rig.lidars.size() > 1 ? core::SE3::Identity() : rig.lidars.at(0).T_body_lidar;
+    poses.push_back({middle, estimate.headline().pose(middle) * T_body_cloud});
   }
   return poses;
 }
