@@ -129,7 +129,9 @@ void add_structure(Assembly& a, const Site& s) {
     const double low = s.ground.height_m(x0, 0) + s.l.height_m + 0.03;
     const double high = s.ground.land().height_m(x0, 0) + s.l.parapet_m;
     b.use(tunnel_concrete);
-    add_box(b, {std::min(x0, x1), -y, low}, {std::max(x0, x1), y, high});
+    // In three pieces, as the ground below it has three: land, road, land.
+    for (const auto& [from, to] : {std::pair{-y, -s.l.half_m}, {-s.l.half_m, s.l.half_m}, {s.l.half_m, y}})
+      add_box(b, {std::min(x0, x1), from, low}, {std::max(x0, x1), to, high});
     b.use(sign_face_yellow);  // clear height
     const double face = x0 + end * 0.03;
     add_box(b, {std::min(x0, face), -1.1, low + 0.4}, {std::max(x0, face), 1.1, low + 0.9});
