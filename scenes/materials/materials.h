@@ -49,6 +49,17 @@ enum class MaterialId : std::uint16_t {
   marker_blue,
   light_lens,
   tunnel_concrete,
+  floor_vinyl,
+  wood,
+  cardboard,
+  steel_orange,
+  brick,
+  plaster,
+  car_paint_dark,
+  soil,
+  rock,
+  bark,
+  foliage,
   count
 };
 
