@@ -54,8 +54,10 @@ void add_surfaces(Assembly& a, const Site& site) {
     const double reach = section.shoulder_m + site.options.grass_m;
     Vector2d low = line.at(0).p_m, high = low;
     for (double s = 0; s <= site.length_m(); s += 5) {
-      low = low.cwiseMin(line.place(s, 0));
-      high = high.cwiseMax(line.place(s, reach));
+      for (const double d : {0.0, reach}) {
+        low = low.cwiseMin(line.place(s, d));
+        high = high.cwiseMax(line.place(s, d));
+      }
     }
     add_ground_region(grass, site.ground, low, high, {}, [&](const Vector2d& from, const Vector2d& to) {
       // All that the strip does not reach, and up to a cell's diagonal of what it does: the two lie on each other
