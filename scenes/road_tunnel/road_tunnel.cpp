@@ -230,8 +230,8 @@ Scene make_road_tunnel(const RoadTunnelOptions& options, std::uint64_t seed) {
   texture.stream = "scenes/road_tunnel/texture";
   scene.relief = std::make_shared<SlabRelief>(texture, seed);
   const RoadTunnelLayout& l = ground->layout();
-  scene.interest_min = {-l.portal_m - 60, -45};
-  scene.interest_max = {45, 45};
+  scene.interest_min = {std::max(-l.portal_m - 25, -115.0), -35};
+  scene.interest_max = {30, 35};
   Assembly a(scene, *ground);
   const Site site{.options = options, .l = l, .ground = *ground};
   add_road(a, site);
