@@ -6,8 +6,8 @@
 namespace tarmac::scenes {
 
 /// z(u) = z_0 + g_0 (u - u_0) + sum_k (g_k - g_(k-1)) w_k ln(1 + exp((u - u_k) / w_k)): the polyline through the given
-/// points, each break rounded over a few w_k. The grade changes by a logistic function, so the vertical curve at break k
-/// has its smallest radius, 4 w_k / |g_k - g_(k-1)|, at the break. Beyond its ends the polyline goes on straight.
+/// points, each break rounded over a few w_k. The grade changes by a logistic function, so the vertical curve at break
+/// k has its smallest radius, 4 w_k / |g_k - g_(k-1)|, at the break. Beyond its ends the polyline goes on straight.
 class RoundedProfile {
  public:
   /// A point of the polyline; `rounding_m` is w, unused at the first and last point.

@@ -1,5 +1,6 @@
 #include "scenes/paving/section_ground.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace tarmac::scenes {
@@ -37,7 +38,8 @@ double SectionGround::height_m(double x_m, double y_m, Vector2d* gradient, Eigen
     // with t, n, the curvature k and its change k' at the foot of the perpendicular (Frenet's formulas).
     const Vector2d& t = place.foot.tangent;
     const Vector2d& n = place.foot.left;
-    const double k = place.foot.curvature_per_m, stretch = 1 - k * place.d_m;
+    const double k = place.foot.curvature_per_m;
+    const double stretch = std::max(1 - k * place.d_m, 0.02);  // at a bend's centre, where the profiles are flat
     const Vector2d grad_s = t / stretch;
     if (gradient != nullptr) *gradient += across.grade * n + along.grade * grad_s + slope_;
     if (hessian != nullptr) {

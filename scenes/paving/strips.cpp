@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace tarmac::scenes {
 
@@ -118,8 +119,7 @@ std::vector<double> StripMesher::lines_across(double right_d_m, double left_d_m)
   for (const double s : places(stations_m_.front(), stations_m_.back(), std::clamp(length_m / 60, 1.0, 10.0))) {
     const CentreLine::Point at = line_->at(s);
     for (std::size_t k = 0; k < most.places_m().size(); ++k) {
-      const Curvatures c =
-          curvatures(*ground_, at.p_m + most.places_m()[k] * at.left, at.tangent, at.left);
+      const Curvatures c = curvatures(*ground_, at.p_m + most.places_m()[k] * at.left, at.tangent, at.left);
       most.add(k, c.across + c.mixed);
     }
   }
@@ -155,20 +155,23 @@ void StripMesher::wall(MeshBuilder& b, double d_m, double low_m, double high_m, 
     v.push_back(b.vertex({p.x(), p.y(), z + low_m}));
     v.push_back(b.vertex({p.x(), p.y(), z + high_m}));
   }
-  add_grid(b, v, 2, /*flip=*/faces_left);  // up x forward is left for a face that is not flipped ... turned
+  add_grid(b, v, 2, /*flip=*/!faces_left);  // columns run up, rows forward: up x forward is left
 }
 
 void add_ground_region(MeshBuilder& b, const Ground& ground, const Vector2d& low_m, const Vector2d& high_m,
                        const MeshTolerance& tolerance, const CellFilter& keep, double lift_m,
                        const std::vector<double>& cuts_x_m, const std::vector<double>& cuts_y_m) {
-  const double fine = 0.5, coarse = 4;
   const auto lines = [&](int axis, const std::vector<double>& cuts) {
+    const Vector2d size = high_m - low_m;
+    const double fine = std::max(0.5, size[axis] / 800), coarse = std::max(3.0, size[1 - axis] / 80);
+    const Vector2d reach = 0.5 * (axis == 0 ? Vector2d(fine, coarse) : Vector2d(coarse, fine));
     Sampled most(low_m[axis], high_m[axis], fine);
     for (std::size_t k = 0; k < most.places_m().size(); ++k) {
       for (const double other : places(low_m[1 - axis], high_m[1 - axis], coarse)) {
         Vector2d p;
         p[axis] = most.places_m()[k];
         p[1 - axis] = other;
+        if (keep && !keep(p - reach, p + reach)) continue;  // nothing to follow here
         const Curvatures c = curvatures(ground, p, Vector2d::UnitX(), Vector2d::UnitY());
         most.add(k, (axis == 0 ? c.along : c.across) + c.mixed);
       }
@@ -181,8 +184,8 @@ void add_ground_region(MeshBuilder& b, const Ground& ground, const Vector2d& low
     std::vector<double> list{ends.front()};
     for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
       if (ends[k + 1] - ends[k] < 1e-6) continue;
-      const std::vector<double> part = chord_steps(ends[k], ends[k + 1], most, share_of_sagitta * tolerance.sagitta_m,
-                                                   tolerance.max_cell_m);
+      const std::vector<double> part =
+          chord_steps(ends[k], ends[k + 1], most, share_of_sagitta * tolerance.sagitta_m, tolerance.max_cell_m);
       list.insert(list.end(), part.begin() + 1, part.end());
     }
     return list;
@@ -218,37 +221,16 @@ Fillet fillet(const Vector2d& corner, const Vector2d& start, const Vector2d& end
   return {centre, radius_m, std::atan2(a.y(), a.x()), turn, leg};
 }
 
-}  // namespace
-
-std::vector<Vector2d> fillet_outline(const Vector2d& corner_m, const Vector2d& start, const Vector2d& end,
-                                     double radius_m, double step_m) {
-  const Fillet f = fillet(corner_m, start, end, radius_m);
-  const int n = std::max(2, static_cast<int>(std::ceil(std::abs(f.turn_rad) * radius_m / step_m)));
-  std::vector<Vector2d> outline{corner_m};
-  for (int k = 0; k <= n; ++k) outline.push_back(f.arc(static_cast<double>(k) / n));
-  // Seen from the corner the arc runs from the first line to the second: counter-clockwise if `end` is to the left.
-  if (start.x() * end.y() - start.y() * end.x() < 0) std::reverse(outline.begin() + 1, outline.end());
-  return outline;
-}
-
-void add_fillet(MeshBuilder& b, const Ground& ground, const Vector2d& corner_m, const Vector2d& start,
-                const Vector2d& end, double radius_m, const MeshTolerance& tolerance) {
-  const Fillet f = fillet(corner_m, start, end, radius_m);
-  // Rays from points of the two legs to the arc; cells of one size, that of the sharpest curvature inside.
-  double most = 0;
-  for (int i = 0; i <= 8; ++i) {
-    for (int j = 0; j <= 8; ++j) {
-      const Vector2d p = corner_m + f.leg_m / 8 * (i * start + j * end);
-      const Curvatures c = curvatures(ground, p, start, end);
-      most = std::max(most, c.along + c.across + 2 * c.mixed);
-    }
-  }
+/// Between two legs that meet at `knee` and the arc: rays from points of the legs to points of the arc, cut into cells.
+void fill_to_arc(MeshBuilder& b, const Ground& ground, const Fillet& f, const Vector2d& touch0, const Vector2d& knee,
+                 const Vector2d& touch1, double most_curved, bool facing_left, const MeshTolerance& tolerance) {
   const double cell =
-      std::clamp(most > 0 ? std::sqrt(4 * tolerance.sagitta_m / most) : tolerance.max_cell_m, 0.3, tolerance.max_cell_m);
-  const int half = std::max(2, static_cast<int>(std::ceil(f.leg_m / cell)));
-  const int rows = std::max(1, static_cast<int>(std::ceil((f.centre - corner_m).norm() * 0.45 / cell)));
+      std::clamp(most_curved > 0 ? std::sqrt(4 * tolerance.sagitta_m / most_curved) : tolerance.max_cell_m, 0.3,
+                 tolerance.max_cell_m);
+  const int half = std::max(2, static_cast<int>(std::ceil((knee - touch0).norm() / cell)));
+  const int rows = std::max(1, static_cast<int>(std::ceil((f.arc(0.5) - knee).norm() / cell)));
   const auto leg = [&](int k) -> Vector2d {
-    return k <= half ? corner_m + f.leg_m * (half - k) / half * start : corner_m + f.leg_m * (k - half) / half * end;
+    return k <= half ? touch0 + (knee - touch0) * k / half : knee + (touch1 - knee) * (k - half) / half;
   };
   std::vector<std::uint32_t> v;
   for (int k = 0; k <= 2 * half; ++k) {
@@ -258,17 +240,78 @@ void add_fillet(MeshBuilder& b, const Ground& ground, const Vector2d& corner_m, 
       v.push_back(b.vertex({p.x(), p.y(), ground.height_m(p.x(), p.y())}));
     }
   }
-  const bool left = start.x() * end.y() - start.y() * end.x() > 0;
   const auto at = [&](int k, int j) { return v[static_cast<std::size_t>(k * (rows + 1) + j)]; };
-  const auto facing_up = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) {
-    left ? b.triangle(p, q, r) : b.triangle(p, r, q);
+  const auto add = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) {
+    facing_left ? b.triangle(p, q, r) : b.triangle(p, r, q);
   };
   for (int k = 0; k < 2 * half; ++k) {
     for (int j = 0; j < rows; ++j) {
-      if (k > 0) facing_up(at(k, j), at(k, j + 1), at(k + 1, j));  // the rays at both ends have no length
-      if (k + 1 < 2 * half) facing_up(at(k, j + 1), at(k + 1, j + 1), at(k + 1, j));
+      if (k > 0) add(at(k, j), at(k, j + 1), at(k + 1, j));  // the rays at both ends have no length
+      if (k + 1 < 2 * half) add(at(k, j + 1), at(k + 1, j + 1), at(k + 1, j));
     }
   }
+}
+
+double most_curved(const Ground& ground, const Vector2d& corner, const Vector2d& leg0, const Vector2d& leg1) {
+  double most = 0;
+  constexpr int n = 12;
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= n; ++j) {
+      const Curvatures c = curvatures(ground, corner + (i * leg0 + j * leg1) / n, leg0.normalized(), leg1.normalized());
+      most = std::max(most, c.along + c.across + 2 * c.mixed);
+    }
+  }
+  return most;
+}
+
+void add_fillet_part(MeshBuilder& b, const Ground& ground, const Vector2d& corner_m, const Vector2d& start,
+                     const Vector2d& end, double radius_m, const MeshTolerance& tolerance, bool rest) {
+  const Fillet f = fillet(corner_m, start, end, radius_m);
+  const Vector2d leg0 = f.leg_m * start, leg1 = f.leg_m * end;
+  const bool left = start.x() * end.y() - start.y() * end.x() > 0;
+  fill_to_arc(b, ground, f, corner_m + leg0, rest ? corner_m + leg0 + leg1 : corner_m, corner_m + leg1,
+              most_curved(ground, corner_m, leg0, leg1), left != rest, tolerance);
+}
+
+}  // namespace
+
+void add_fillet(MeshBuilder& b, const Ground& ground, const Vector2d& corner_m, const Vector2d& start,
+                const Vector2d& end, double radius_m, const MeshTolerance& tolerance) {
+  add_fillet_part(b, ground, corner_m, start, end, radius_m, tolerance, false);
+}
+
+void add_fillet_rest(MeshBuilder& b, const Ground& ground, const Vector2d& corner_m, const Vector2d& start,
+                     const Vector2d& end, double radius_m, const MeshTolerance& tolerance) {
+  add_fillet_part(b, ground, corner_m, start, end, radius_m, tolerance, true);
+}
+
+void add_swept(MeshBuilder& b, const Ground& ground, const CentreLine& line, double s0_m, double s1_m,
+               const std::vector<Vector2d>& outline, double step_m) {
+  const int n = std::max(1, static_cast<int>(std::ceil((s1_m - s0_m) / step_m - 1e-9)));
+  std::vector<Ring> rings;
+  for (int k = 0; k <= n; ++k) {
+    const CentreLine::Point at = line.at(s0_m + (s1_m - s0_m) * k / n);
+    Ring ring;
+    for (const Vector2d& q : outline) {
+      const Vector2d p = at.p_m + q.x() * at.left;
+      ring.emplace_back(p.x(), p.y(), ground.height_m(p.x(), p.y()) + q.y());
+    }
+    rings.push_back(std::move(ring));
+  }
+  add_loft(b, rings);
+}
+
+std::vector<Vector2d> rectangle_outline(double d0_m, double h0_m, double d1_m, double h1_m) {
+  return {{d0_m, h0_m}, {d0_m, h1_m}, {d1_m, h1_m}, {d1_m, h0_m}};
+}
+
+std::vector<Vector2d> circle_outline(double d_m, double h_m, double radius_m, int segments) {
+  std::vector<Vector2d> outline;
+  for (int k = 0; k < segments; ++k) {
+    const double a = 2 * std::numbers::pi * k / segments;
+    outline.emplace_back(d_m + radius_m * std::sin(a), h_m + radius_m * std::cos(a));
+  }
+  return outline;
 }
 
 }  // namespace tarmac::scenes

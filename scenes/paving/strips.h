@@ -42,8 +42,8 @@ class StripMesher {
 
 /// Which cells to leave out: the rectangle [low, high] of a cell.
 using CellFilter = std::function<bool(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m)>;
-/// The ground over the rectangle [low_m, high_m], `lift_m` above it, facing up; cells for which `keep` is false are left
-/// out. Cells are cut at `cuts_x_m` and `cuts_y_m` too, so that a filter may follow straight edges exactly.
+/// The ground over the rectangle [low_m, high_m], `lift_m` above it, facing up; cells for which `keep` is false are
+/// left out. Cells are cut at `cuts_x_m` and `cuts_y_m` too, so that a filter may follow straight edges exactly.
 void add_ground_region(MeshBuilder& b, const Ground& ground, const Eigen::Vector2d& low_m,
                        const Eigen::Vector2d& high_m, const MeshTolerance& tolerance = {}, const CellFilter& keep = {},
                        double lift_m = 0, const std::vector<double>& cuts_x_m = {},
@@ -52,9 +52,18 @@ void add_ground_region(MeshBuilder& b, const Ground& ground, const Eigen::Vector
 /// `end` are unit vectors along the two lines, away from the corner.
 void add_fillet(MeshBuilder& b, const Ground& ground, const Eigen::Vector2d& corner_m, const Eigen::Vector2d& start,
                 const Eigen::Vector2d& end, double radius_m, const MeshTolerance& tolerance = {});
-/// Outline of that fillet, counter-clockwise; the corner is its first point.
-std::vector<Eigen::Vector2d> fillet_outline(const Eigen::Vector2d& corner_m, const Eigen::Vector2d& start,
-                                            const Eigen::Vector2d& end, double radius_m, double step_m);
+/// What a fillet leaves of the square (in general: kite) between its two touching points, beyond the arc.
+void add_fillet_rest(MeshBuilder& b, const Ground& ground, const Eigen::Vector2d& corner_m,
+                     const Eigen::Vector2d& start, const Eigen::Vector2d& end, double radius_m,
+                     const MeshTolerance& tolerance = {});
+
+/// A closed bar along the line from s0 to s1 with the cross-section `outline`: points (d, height above the ground below
+/// the line), counter-clockwise seen along the line. Kerbs, guard rails, pipes, cable trays. Convex outlines.
+void add_swept(MeshBuilder& b, const Ground& ground, const CentreLine& line, double s0_m, double s1_m,
+               const std::vector<Eigen::Vector2d>& outline, double step_m);
+/// Corners of a rectangle, and points of a circle, as such outlines.
+std::vector<Eigen::Vector2d> rectangle_outline(double d0_m, double h0_m, double d1_m, double h1_m);
+std::vector<Eigen::Vector2d> circle_outline(double d_m, double h_m, double radius_m, int segments);
 
 /// Places u0 = from, u1, ... = to such that a chord between neighbours lies within `sagitta_m` of a curve whose second
 /// derivative is at most curvature_at(u), and is at most max_step_m long.
