@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/recording.h"
+#include "sim/collisions.h"
 #include "sim/faults/fault_log.h"
 #include "sim/faults/fault_options.h"
 #include "sim/faults/imu_faults.h"
@@ -122,6 +123,7 @@ Workload workload_of(const ConfigNode& rig, Duration duration) {
 
 void check(const SimulationInput& input) {
   sweeps_within(firing_table(read_setup(input).rig, input.seed), input);
+  check_collisions(*input.scene, *input.motion, {}, Time(input.duration), input.scenario_name);
 }
 
 SimulationSummary simulate(const SimulationInput& input, const SimulationSettings& settings,

@@ -20,10 +20,10 @@ struct SimulationInput {
   core::Duration duration{0};
   std::shared_ptr<const scenes::Scene> scene;
   std::shared_ptr<const core::SmoothTrajectory> motion;
-  core::ConfigNode rig;               ///< the scenario's `rig:` block: {lidar: {...}, imu: {...}, gravity_m_s2}
-  std::string resolved_scenario;      ///< stored as truth/scenario.yaml
-  std::string resolved_motion;        ///< of sim::truth::resolve_motion; stored as truth/motion.yaml
-  core::ConfigNode faults;            ///< the scenario's `faults:` block; absent: nothing is wrong
+  core::ConfigNode rig;           ///< the scenario's `rig:` block: {lidar: {...}, imu: {...}, gravity_m_s2}
+  std::string resolved_scenario;  ///< stored as truth/scenario.yaml
+  std::string resolved_motion;    ///< of sim::truth::resolve_motion; stored as truth/motion.yaml
+  core::ConfigNode faults;        ///< the scenario's `faults:` block; absent: nothing is wrong
 };
 
 struct SimulationSettings {
@@ -51,7 +51,8 @@ struct Workload {
 };
 Workload workload_of(const core::ConfigNode& rig, core::Duration duration);
 
-/// Throws InputError when simulate() would refuse the input.
+/// Throws InputError when simulate() would refuse the input, and when something runs into something else
+/// (collisions.h).
 void check(const SimulationInput& input);
 
 /// Writes `recording_folder` (finished last) and `truth_folder`. Same input, same bytes, at any number of threads.

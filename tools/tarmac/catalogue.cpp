@@ -13,6 +13,7 @@
 #include "metrics/registry.h"
 #include "reports/report.h"
 #include "scenarios/sweep_file.h"
+#include "scenes/actors/actors.h"
 #include "scenes/registry.h"
 #include "sim/simulate.h"
 #include "sim/truth/motion.h"
@@ -144,6 +145,20 @@ std::string describe_scene(const std::string& name) {
   unknown("scene", name, scene_entries());
 }
 
+std::vector<Entry> actor_entries() {
+  std::vector<Entry> entries;
+  for (const scenes::ActorKindSummary& kind : scenes::actor_summaries()) entries.push_back({kind.name, kind.summary});
+  return entries;
+}
+
+std::string describe_actor(const std::string& name) {
+  for (const Entry& entry : actor_entries())
+    if (entry.name == name)
+      return fmt::format("{}: {}\none entry of a scene's `actors:` list\n{}", name, entry.summary,
+                         options_text(scenes::describe_actor(name)));
+  unknown("actor", name, actor_entries());
+}
+
 std::vector<Entry> motion_entries() {
   std::vector<Entry> entries;
   for (const std::string& kind : sim::truth::motion_kinds()) entries.push_back({kind, ""});
@@ -208,6 +223,7 @@ const std::vector<Kind>& kinds() {
       {"sweeps", "sweep", sweep_entries, describe_sweep},
       {"gates", "gate", gate_entries, describe_gate},
       {"scenes", "scene", scene_entries, describe_scene},
+      {"actors", "actor", actor_entries, describe_actor},
       {"motions", "motion", motion_entries,
        [](const std::string& name) { return options_text(sim::truth::describe_motion(name)); }},
       {"sensors", "sensor", [] { return catalogue_entries(sim::lidar_catalogue()); }, sim::describe_lidar},
