@@ -1,11 +1,12 @@
 #include "scenes/registry.h"
 
 #include "scenes/actors/actors.h"
+#include "scenes/meshes/meshes.h"
 
 namespace tarmac::scenes {
 
 const std::vector<std::string>& common_scene_keys() {
-  static const std::vector<std::string> keys{"kind", "actors"};
+  static const std::vector<std::string> keys{"kind", "meshes", "actors"};
   return keys;
 }
 
@@ -26,6 +27,7 @@ const SceneEntry& scene_of(const core::ConfigNode& node) {
 
 Scene make_scene(const core::ConfigNode& node, std::uint64_t seed) {
   Scene scene = scene_of(node).make(node, seed);
+  add_meshes(scene, node.child("meshes"));
   add_actors(node, scene);
   return scene;
 }
@@ -35,7 +37,7 @@ std::shared_ptr<const Ground> make_ground(const core::ConfigNode& node, std::uin
 }
 
 std::string resolve_scene(const core::ConfigNode& node) {
-  return scene_of(node).resolve(node) + resolve_actors(node);
+  return scene_of(node).resolve(node) + resolve_meshes(node.child("meshes")) + resolve_actors(node);
 }
 
 }  // namespace tarmac::scenes

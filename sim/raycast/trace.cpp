@@ -88,7 +88,7 @@ void Rays::resize(std::size_t n) {
 
 void Hits::resize(std::size_t n) {
   t_m.resize(n);
-  for (std::vector<float>* v : {&nx, &ny, &nz, &cos_incidence}) v->resize(n);
+  for (std::vector<float>* v : {&nx, &ny, &nz, &cos_incidence, &relief_m}) v->resize(n);
   instance.resize(n);
   material.resize(n);
 }
@@ -159,6 +159,7 @@ void SweepTracer::trace(const Rays& rays, std::span<const std::uint32_t> order, 
   State& s = *state_;
   hits.resize(rays.size());
   std::fill(hits.instance.begin(), hits.instance.end(), Hits::nothing);
+  std::fill(hits.relief_m.begin(), hits.relief_m.end(), 0.0f);
   s.scratch.resize(rays.size());
   RTCIntersectContext context = coherent_context();
   // A few tiles at a time: packed, traced, kept. One by one, Embree would wait for the packing's stores to land.
@@ -341,7 +342,8 @@ void SweepTracer::State::finish_static(const Rays& rays, Hits& hits) {
   scratch.relief.solve(*tracer->scene->relief);
   for (std::size_t k = 0; k < scratch.relief_rays.size(); ++k) {
     const std::uint32_t i = scratch.relief_rays[k];
-    hits.t_m[i] += static_cast<double>(scratch.relief.s_m()[k]);
+    hits.relief_m[i] = scratch.relief.s_m()[k];
+    hits.t_m[i] += static_cast<double>(hits.relief_m[i]);
     hits.cos_incidence[i] = scratch.relief.cos_incidence()[k];
   }
 }
@@ -375,6 +377,7 @@ void SweepTracer::State::finish_moving(const Rays& rays, Hits& hits) {
     const std::uint16_t material = scene.meshes[instance.mesh].materials[met.triangle];
     if (scene.relief && scene.materials[material].has_relief) {
       const ReliefHit relief = meet_relief(*scene.relief, base + o + t * d, d, n, t);
+      hits.relief_m[i] = static_cast<float>(relief.t_m - t);
       t = relief.t_m;
       cosine = relief.cos_incidence;
     }

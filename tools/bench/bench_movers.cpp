@@ -55,9 +55,9 @@ World build(const std::string& actors, bool fast) {
   const sim::RigOptions rig = sim::read_rig(world.input.rig);
   world.tracer = std::make_shared<const sim::raycast::Tracer>(world.input.scene, sim::raycast::TracerSettings{1, fast});
   world.simulator = std::make_unique<sim::lidar::SweepSimulator>(
-      rig.lidar.profile, sim::firing_table(rig, seed),
-      sim::lidar::Mounting{.sensor = 0, .T_body_lidar = rig.lidar.T_body_lidar}, rig.lidar.noise, seed, world.tracer,
-      world.input.scene, world.input.motion);
+      rig.lidars[0].profile, sim::firing_table(rig, seed),
+      sim::lidar::Mounting{.sensor = 0, .T_body_lidar = rig.lidars[0].T_body_lidar}, rig.lidars[0].noise, seed,
+      world.tracer, world.input.scene, world.input.motion);
   return world;
 }
 
