@@ -2,8 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/error.h"
-#include "scenes/aircraft/aircraft.h"
+#include "scenes/aircraft/parts.h"
 
 namespace tarmac::scenes {
 
@@ -42,43 +41,40 @@ struct SpanStation {
   Vector3d up;
 };
 
-std::vector<SpanStation> wing_stations(const AircraftType& type, const SurfacePlan& plan) {
+/// Unit vector across the span, up, for a surface with dihedral.
+Vector3d up_of(const SurfacePlan& plan) {
+  return {0, -std::sin(plan.dihedral_deg * deg), std::cos(plan.dihedral_deg * deg)};
+}
+
+std::vector<SpanStation> wing_stations(const SurfacePlan& plan, bool from_centre_line) {
   std::vector<SpanStation> stations;
-  const double slope = std::tan(plan.le_sweep_deg * deg), rise = std::tan(plan.dihedral_deg * deg);
-  const Vector3d up = Vector3d(0, -std::sin(plan.dihedral_deg * deg), std::cos(plan.dihedral_deg * deg));
   const auto add = [&](double y) {
-    const bool inboard = y <= plan.kink_y_m;
-    const double y0 = inboard ? plan.root_y_m : plan.kink_y_m, y1 = inboard ? plan.kink_y_m : plan.tip_y_m;
-    const double c0 = inboard ? plan.root_chord_m : plan.kink_chord_m,
-                 c1 = inboard ? plan.kink_chord_m : plan.tip_chord_m;
-    const double chord = c0 + (c1 - c0) * (y - y0) / (y1 - y0);
     const double t = std::max(0.0, (y - plan.root_y_m) / (plan.tip_y_m - plan.root_y_m));
-    const double le_x = plan.root_le_x_m + (y - plan.root_y_m) * slope;
-    stations.push_back({Vector3d(-le_x, y, plan.root_z_m + (y - plan.root_y_m) * rise), chord,
-                        plan.thickness_root + t * (plan.thickness_tip - plan.thickness_root), up});
+    stations.push_back({Vector3d(-surface_le_x_m(plan, y), y, surface_le_z_m(plan, y)), surface_chord_m(plan, y),
+                        plan.thickness_root + t * (plan.thickness_tip - plan.thickness_root), up_of(plan)});
   };
   // From inside the fuselage outward.
-  const double from = plan.root_y_m > 0 ? plan.root_y_m / 2 : 0;
+  const double from = from_centre_line ? 0 : plan.root_y_m / 2;
   const auto span = [&](double y0, double y1, int n) {
     for (int k = 0; k < n; ++k) add(y0 + (y1 - y0) * k / n);
   };
   span(from, plan.kink_y_m, 8);
   if (plan.tip_y_m > plan.kink_y_m) span(plan.kink_y_m, plan.tip_y_m, 16);
   add(plan.tip_y_m);
-  (void)type;
   return stations;
 }
 
-/// The sharklet: the span bends upward over the first third of its rise, then goes on straight, so that its outermost
-/// point is the type's half span.
+/// The span bends upward, so that its outermost point is the type's half span: sharklets, blended winglets, curved
+/// tips.
 void append_sharklet(std::vector<SpanStation>& stations, const AircraftType& type) {
   const SpanStation tip = stations.back();
-  const double tip_chord = 0.42 * tip.chord_m, thickness = 0.08;
+  const double tip_chord = type.device.tip_chord_share * tip.chord_m, thickness = 0.08;
   const double reach = type.span_m / 2 - tip.leading_edge.y() - 0.5 * thickness * tip_chord - 0.002;
   const double rise = type.device.rise_m, sweep = std::tan(type.device.sweep_deg * deg);
   const double start = std::atan2(-tip.up.y(), tip.up.z());  // direction of span, from horizontal
   // A quadratic Bezier from the tip along its own direction, then up: p(u) in the y-z plane.
-  const Eigen::Vector2d p0(0, 0), p1(0.75 * reach, 0.75 * reach * std::tan(start)), p2(reach, rise);
+  const Eigen::Vector2d p0(0, 0), p1(type.device.bend * reach, type.device.bend * reach * std::tan(start)),
+      p2(reach, rise);
   constexpr int n = 14;
   Eigen::Vector2d before = p0;
   double arc = 0;
@@ -95,6 +91,34 @@ void append_sharklet(std::vector<SpanStation>& stations, const AircraftType& typ
   }
 }
 
+/// The last metres of the span with more sweep, in the wing's own plane, down to a narrow end.
+void append_raked_tip(std::vector<SpanStation>& stations, const AircraftType& type) {
+  const SpanStation tip = stations.back();
+  const double reach = type.span_m / 2 - tip.leading_edge.y(), rise = std::tan(type.wing.dihedral_deg * deg);
+  const double sweep = std::tan(type.device.sweep_deg * deg), tip_chord = type.device.tip_chord_share * tip.chord_m;
+  constexpr int n = 8;
+  for (int k = 1; k <= n; ++k) {
+    const double u = static_cast<double>(k) / n;
+    stations.push_back({tip.leading_edge + Vector3d(-u * reach * sweep, u * reach, u * reach * rise),
+                        tip.chord_m + (tip_chord - tip.chord_m) * u, tip.thickness, tip.up});
+  }
+}
+
+/// A swept plate that stands up and down at the wing's end, its outer face at the type's half span.
+void add_fence(MeshBuilder& b, const SpanStation& tip, const AircraftType& type) {
+  const double c = tip.chord_m, x = tip.leading_edge.x(), z = tip.leading_edge.z(), rise = type.device.rise_m;
+  const double y = type.span_m / 2;
+  b.use(MaterialId::aircraft_blue_topcoat);
+  add_plate(b,
+            {{x - 0.12 * c, z},
+             {x - 0.72 * c, z - rise},
+             {x - 1.02 * c, z - rise},
+             {x - 1.10 * c, z},
+             {x - 1.02 * c, z + rise},
+             {x - 0.72 * c, z + rise}},
+            y - 0.10, y);
+}
+
 /// Slat noses are bare metal, the box grey; the device wears the livery.
 void loft_surface(MeshBuilder& b, const std::vector<SpanStation>& stations, std::size_t livery_from, MaterialId livery,
                   MaterialId body) {
@@ -106,27 +130,31 @@ void loft_surface(MeshBuilder& b, const std::vector<SpanStation>& stations, std:
   });
 }
 
-/// The fairing where wing and body meet: a flat-bottomed pod below the fuselage.
-void add_belly_fairing(MeshBuilder& b, const AircraftType& type) {
+/// A ring of a pod whose section is a squarish ellipse; `up` and `down` are its half heights.
+Ring pod_ring(double x, double z, double half_width, double up, double down) {
+  constexpr int around = 20;
+  Ring ring;
+  for (int j = 0; j < around; ++j) {
+    const double a = 2 * std::numbers::pi * j / around, c = std::cos(a), d = std::sin(a);
+    const double squarish = 1 / std::pow(std::pow(std::abs(c), 2.8) + std::pow(std::abs(d), 2.8), 1 / 2.8);
+    ring.emplace_back(x, half_width * squarish * c, z + (d < 0 ? down : up) * squarish * d);
+  }
+  return ring;
+}
+
+/// The fairing where wing and body meet: a flat-bottomed pod below the fuselage, or one on top for a high wing.
+void add_wing_fairing(MeshBuilder& b, const AircraftType& type) {
   const SurfacePlan& w = type.wing;
-  const double from = w.root_le_x_m - 2.2, to = w.root_le_x_m + w.root_chord_m + 2.2;
-  const double low = type.floor_z_m + 1e-3, half = w.root_y_m;
+  const double beyond = 0.3625 * w.root_chord_m, half = w.root_y_m;
+  const double from = w.root_le_x_m - beyond, to = w.root_le_x_m + w.root_chord_m + beyond;
+  const double z = w.root_z_m + 0.1, low = z - type.belly_clearance_m;
   std::vector<Ring> rings;
-  constexpr int n = 24, around = 20;
+  constexpr int n = 24;
   for (int i = 0; i <= n; ++i) {
     const double s = static_cast<double>(i) / n, x = from + (to - from) * s;
     const double swell = std::pow(std::max(0.02, std::sin(std::numbers::pi * s)), 0.35);
-    double bottom = 1e9;  // of the fuselage over the fairing
-    for (const FuselageStation& station : type.stations) bottom = std::min(bottom, station.bottom_m);
-    const double depth = (low + bottom - w.root_z_m - 0.10) * -1;
-    Ring ring;
-    for (int j = 0; j < around; ++j) {
-      const double a = 2 * std::numbers::pi * j / around, c = std::cos(a), d = std::sin(a);
-      const double squarish = 1 / std::pow(std::pow(std::abs(c), 2.8) + std::pow(std::abs(d), 2.8), 1 / 2.8);
-      ring.emplace_back(-x, 1.04 * half * swell * squarish * c,
-                        w.root_z_m + 0.1 + (d < 0 ? depth + 0.1 : 0.55) * swell * squarish * d);
-    }
-    rings.push_back(std::move(ring));
+    rings.push_back(type.high_wing ? pod_ring(-x, z - 0.25, 0.72 * half * swell, 0.5 * swell, 0.7 * swell)
+                                   : pod_ring(-x, z, 1.04 * half * swell, 0.28 * half * swell, low * swell));
   }
   b.use(MaterialId::aircraft_white_topcoat);
   add_loft(b, rings);
@@ -154,27 +182,56 @@ void add_flap_tracks(MeshBuilder& b, const std::vector<SpanStation>& stations) {
   }
 }
 
+/// A low fin of triangular outline that leads into the fin.
+void add_dorsal_fin(MeshBuilder& b, const Fin& fin, double slope) {
+  const double x = -fin.le_x_m - 0.4 * slope, z = fin.root_z_m;
+  b.use(MaterialId::aircraft_blue_topcoat);
+  add_plate(b,
+            {{x + fin.dorsal_length_m, z - 0.5},
+             {x - 1.5, z - 0.5},
+             {x - 1.5 - slope * fin.dorsal_height_m, z + fin.dorsal_height_m},
+             {x - slope * fin.dorsal_height_m, z + fin.dorsal_height_m}},
+            -0.06, 0.06);
+}
+
+/// The body at the top of a T-tail's fin; its aft end is the aircraft's.
+void add_tail_bullet(MeshBuilder& b, const AircraftType& type) {
+  const SurfacePlan& p = type.tailplane;
+  const double from = p.root_le_x_m - 0.8, to = type.length_m;
+  const double z = p.root_z_m, r = (type.height_min_m + type.height_max_m) / 2 - z;
+  std::vector<Ring> rings;
+  constexpr int n = 12;
+  for (int i = 0; i <= n; ++i) {
+    const double s = static_cast<double>(i) / n;
+    const double swell = std::max(0.05, std::pow(std::sin(std::numbers::pi * std::pow(s, 0.7)), 0.6));
+    rings.push_back(pod_ring(-(from + (to - from) * s), z, 0.8 * r * swell, r * swell, r * swell));
+  }
+  b.use(MaterialId::aircraft_white_topcoat);
+  add_loft(b, rings);
+}
+
 }  // namespace
 
 void add_wings(MeshBuilder& b, const AircraftType& type) {
-  std::vector<SpanStation> stations = wing_stations(type, type.wing);
+  std::vector<SpanStation> stations = wing_stations(type.wing, type.high_wing);
   const std::size_t livery_from = stations.size();
-  if (type.device.kind == "sharklet") {
-    append_sharklet(stations, type);
-  } else if (type.device.kind != "none") {
-    throw core::InputError(type.name + ": wing device '" + type.device.kind + "' is not known; known: sharklet, none");
-  }
+  const SpanStation tip = stations.back();
+  if (type.device.kind == WingTip::sharklet) append_sharklet(stations, type);
+  if (type.device.kind == WingTip::raked) append_raked_tip(stations, type);
+  const bool livery = type.device.kind == WingTip::sharklet;
   for (const bool right : {false, true}) {
     b.mirror_y(right);
-    loft_surface(b, stations, livery_from, MaterialId::aircraft_blue_topcoat, MaterialId::aircraft_grey);
+    loft_surface(b, stations, livery ? livery_from : stations.size(), MaterialId::aircraft_blue_topcoat,
+                 MaterialId::aircraft_grey);
+    if (type.device.kind == WingTip::fence) add_fence(b, tip, type);
     add_flap_tracks(b, stations);
   }
   b.mirror_y(false);
-  add_belly_fairing(b, type);
+  add_wing_fairing(b, type);
 }
 
 void add_tail(MeshBuilder& b, const AircraftType& type) {
-  const std::vector<SpanStation> half = wing_stations(type, type.tailplane);
+  const std::vector<SpanStation> half = wing_stations(type.tailplane, true);
   for (const bool right : {false, true}) {
     b.mirror_y(right);
     loft_surface(b, half, half.size(), MaterialId::aircraft_grey, MaterialId::aircraft_grey);
@@ -191,6 +248,8 @@ void add_tail(MeshBuilder& b, const AircraftType& type) {
                         fin.root_chord_m + s * (fin.tip_chord_m - fin.root_chord_m), fin.thickness, Vector3d::UnitY()});
   }
   loft_surface(b, stations, 0, MaterialId::aircraft_blue_topcoat, MaterialId::aircraft_blue_topcoat);
+  if (fin.dorsal_length_m > 0) add_dorsal_fin(b, fin, slope);
+  if (type.t_tail) add_tail_bullet(b, type);
 }
 
 }  // namespace tarmac::scenes

@@ -1,89 +1,82 @@
-#include "scenes/aircraft/aircraft.h"
+#include <algorithm>
+
+#include "core/config.h"
+#include "core/error.h"
+#include "scenes/aircraft/parts.h"
 
 namespace tarmac::scenes {
 
-// Airbus A320 with sharklets. Sources: Airbus airport-planning document (June 2024) for lengths, span, height, gear,
-// doors and sill; fuselage stations measured from a public model; thickness ratios, window and hold-door sizes and the
-// fin's sweep are estimates.
-const AircraftType& airbus_a320() {
-  static const AircraftType type = [] {
-    AircraftType t{};
-    t.name = "a320";
-    t.length_m = 37.57;
-    t.span_m = 35.80;
-    t.height_min_m = 11.83;
-    t.height_max_m = 12.08;
-    t.floor_z_m = 3.43;
-    t.stations = {{0.1, 0.08, -0.62, 0.30}, {1.0, 0.69, -1.14, 0.94}, {2.0, 1.48, -1.38, 1.40},
-                  {3.0, 2.02, -1.50, 1.68}, {4.0, 2.28, -1.54, 1.86}, {6.0, 2.49, -1.69, 1.98},
-                  {24., 2.49, -1.69, 1.98}, {28., 2.49, -1.14, 1.79}, {32., 2.48, -0.48, 1.35},
-                  {35., 2.19, 0.30, 0.82},  {37.57, 1.66, 1.20, 0.22}};
-    t.nose_gear = {
-        .x_m = 5.07, .half_track_m = 0, .wheel_radius_m = 0.381, .wheel_width_m = 0.22, .wheel_spacing_m = 0.50};
-    t.main_gear = {{.x_m = 17.71,
-                    .half_track_m = 3.795,
-                    .wheel_radius_m = 0.584,
-                    .wheel_width_m = 0.43,
-                    .wheel_spacing_m = 0.927}};
-    t.doors = {{.x_m = 5.04, .width_m = 0.81, .height_m = 1.85, .sill_m = 0, .side = 0},
-               {.x_m = 29.53, .width_m = 0.81, .height_m = 1.85, .sill_m = 0, .side = 0},
-               {.x_m = 8.16, .width_m = 1.82, .height_m = 1.24, .sill_m = -1.40, .side = -1},
-               {.x_m = 22.69, .width_m = 1.82, .height_m = 1.23, .sill_m = -1.40, .side = -1}};
-    t.windows = {.from_x_m = 6.6, .to_x_m = 28.4, .pitch_m = 0.533, .width_m = 0.25, .low_m = 0.88, .high_m = 1.22};
-    t.cockpit = {.windshield_from_x_m = 1.62,
-                 .windshield_to_x_m = 2.62,
-                 .side_to_x_m = 3.72,
-                 .side_panes = 2,
-                 .low_front_m = 0.80,
-                 .low_aft_m = 1.02,
-                 .high_front_m = 1.62,
-                 .high_aft_m = 1.44};
-    t.wing = {.root_le_x_m = 12.9,
-              .root_y_m = 1.975,
-              .root_chord_m = 6.07,
-              .kink_y_m = 6.45,
-              .kink_chord_m = 3.566,
-              .tip_y_m = 17.05,
-              .tip_chord_m = 1.5,
-              .le_sweep_deg = 27.1,
-              .dihedral_deg = 5.1,
-              .root_z_m = 2.6,
-              .thickness_root = 0.135,
-              .thickness_tip = 0.10};
-    t.device = {.kind = "sharklet", .rise_m = 2.3, .sweep_deg = 45};
-    t.engines = {{.y_m = 5.755, .lip_x_m = 11.4, .length_m = 4.9, .radius_m = 1.15, .ground_gap_m = 0.58}};
-    t.tailplane = {.root_le_x_m = 32.8,
-                   .root_y_m = 0,
-                   .root_chord_m = 3.74,
-                   .kink_y_m = 6.225,
-                   .kink_chord_m = 1.24,
-                   .tip_y_m = 6.225,
-                   .tip_chord_m = 1.24,
-                   .le_sweep_deg = 28,
-                   .dihedral_deg = 6,
-                   .root_z_m = 5.0,
-                   .thickness_root = 0.11,
-                   .thickness_tip = 0.10};
-    t.fin = {.height_m = 5.87,
-             .root_chord_m = 5.44,
-             .tip_chord_m = 1.88,
-             .le_x_m = 29.6,
-             .le_sweep_deg = 40,
-             .root_z_m = 6.05,
-             .thickness = 0.10};
-    return t;
+using Eigen::Vector3d;
+
+namespace {
+
+const std::vector<AircraftType>& types() {
+  static const std::vector<AircraftType> all = [] {
+    std::vector<AircraftType> list = regional_types();
+    for (const auto& more : {narrow_body_types(), wide_body_types()}) list.insert(list.end(), more.begin(), more.end());
+    std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+    return list;
   }();
-  return type;
+  return all;
 }
 
-Mesh make_aircraft(const AircraftType& type) {
+}  // namespace
+
+std::vector<std::string> aircraft_names() {
+  std::vector<std::string> names;
+  for (const AircraftType& type : types()) names.push_back(type.name);
+  return names;
+}
+
+const AircraftType& aircraft_type(const std::string& name) {
+  for (const AircraftType& type : types()) {
+    if (type.name == name) return type;
+  }
+  std::string message = "there is no aircraft '" + name + "'; known:";
+  for (const std::string& known : aircraft_names()) message += " " + known;
+  if (const std::string meant = core::did_you_mean(name, aircraft_names()); !meant.empty())
+    message += "; did you mean " + meant + "?";
+  throw core::InputError(message);
+}
+
+Mesh make_aircraft(const AircraftType& type, std::optional<std::size_t> open_left_door) {
+  if (open_left_door && (*open_left_door >= type.doors.size() || type.doors[*open_left_door].side < 0 ||
+                         type.doors[*open_left_door].sill_m < 0)) {
+    throw core::InputError("aircraft " + type.name + ": door " + std::to_string(*open_left_door) +
+                           " cannot be opened: it is no passenger door on the left side");
+  }
   MeshBuilder b("aircraft_" + type.name);
-  add_fuselage(b, type);
+  add_fuselage(b, type, open_left_door);
   add_wings(b, type);
   add_tail(b, type);
   add_engines(b, type);
   add_gear(b, type);
   return std::move(b).build();
+}
+
+core::SE3 park(const AircraftType& type, const Ground& ground, double nose_x_m, double nose_y_m, double heading_rad) {
+  // The outermost main legs carry; a bogie more or less changes the plane by less than its tyres give.
+  const LandingGear& main = *std::max_element(type.main_gear.begin(), type.main_gear.end(),
+                                              [](auto& a, auto& b) { return a.half_track_m < b.half_track_m; });
+  const core::SE3 T_flat = place(nose_x_m, nose_y_m, 0, heading_rad);
+  const auto on_ground = [&](double station_m, double y_m) {
+    const Vector3d p = T_flat * Vector3d(-station_m, y_m, 0);
+    return Vector3d(p.x(), p.y(), ground.height_m(p.x(), p.y()));
+  };
+  const Vector3d nose = on_ground(type.nose_gear.x_m, 0);
+  const Vector3d left = on_ground(main.x_m, main.half_track_m), right = on_ground(main.x_m, -main.half_track_m);
+  const Vector3d forward = (nose - 0.5 * (left + right)).normalized();
+  const Vector3d up = forward.cross(left - right).normalized();
+  core::SE3 T = core::SE3::Identity();
+  T.linear() << forward, up.cross(forward), up;
+  T.translation() = nose + type.nose_gear.x_m * forward;
+  return T;
+}
+
+Vector3d door_sill_world(const AircraftType& type, const core::SE3& T_world_aircraft, std::size_t door) {
+  const Door& d = type.doors.at(door);
+  const double z = type.floor_z_m + d.sill_m;
+  return T_world_aircraft * Vector3d(-d.x_m, fuselage_half_width_m(type, d.x_m, z), z);
 }
 
 }  // namespace tarmac::scenes

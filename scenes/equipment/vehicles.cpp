@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "scenes/equipment/equipment.h"
@@ -174,33 +175,51 @@ void add_catering_truck(MeshBuilder& b) {
   add_box(b, {2.35, -1.2, 3.3}, {3.6, 1.2, 3.4});
 }
 
-void add_passenger_stairs(MeshBuilder& b) {
+namespace {
+
+constexpr double step_run_m = 0.28, stairs_platform_m = 1.7;
+
+int stair_steps(double sill_m) {
+  return std::max(3, static_cast<int>(std::lround(sill_m / 0.243)));
+}
+/// By how much the stairs are longer at each end than those with 14 steps.
+double stair_extension_m(double sill_m) {
+  return (stair_steps(sill_m) - 14) * step_run_m / 2;
+}
+
+}  // namespace
+
+double passenger_stairs_front_m(double sill_m) {
+  return -3.4 - stair_extension_m(sill_m) + stair_steps(sill_m) * step_run_m + stairs_platform_m;
+}
+
+void add_passenger_stairs(MeshBuilder& b, double sill_m) {
+  const int steps = stair_steps(sill_m);
+  const double longer = stair_extension_m(sill_m), from = -3.4 - longer, rise = sill_m / steps;
   for (const double y : {-0.95, 0.95}) {
-    add_road_wheel(b, 1.6, y, 0.38, 0.26);
-    add_road_wheel(b, -2.4, y, 0.38, 0.26);
+    add_road_wheel(b, 1.6 + longer, y, 0.38, 0.26);
+    add_road_wheel(b, -2.4 - longer, y, 0.38, 0.26);
   }
   b.use(gse_paint_white);
-  add_box(b, {-3.6, -1.0, 0.45}, {2.6, 1.0, 0.8});
-  constexpr int steps = 14;
-  constexpr double sill = 3.4, run = 0.28, rise = sill / steps, from = -3.4;
+  add_box(b, {-3.6 - longer, -1.0, 0.45}, {2.6 + longer, 1.0, 0.8});
   b.use(galvanised_steel);
   for (int k = 0; k < steps; ++k) {
-    add_box(b, {from + k * run, -0.7, 0.03 + k * rise + rise - 0.06},
-            {from + k * run + 0.32, 0.7, 0.03 + (k + 1) * rise});
+    add_box(b, {from + k * step_run_m, -0.7, 0.03 + k * rise + rise - 0.06},
+            {from + k * step_run_m + 0.32, 0.7, 0.03 + (k + 1) * rise});
   }
-  const double top_x = from + steps * run;
-  add_box(b, {top_x, -0.9, sill - 0.1}, {top_x + 1.7, 0.9, sill + 0.03});
+  const double top_x = from + steps * step_run_m;
+  add_box(b, {top_x, -0.9, sill_m - 0.1}, {top_x + stairs_platform_m, 0.9, sill_m + 0.03});
   b.use(gse_paint_white);
   for (const double y : {-0.78, 0.78}) {
-    add_beam(b, {from, y, 0.25}, {top_x, y, sill - 0.05}, 0.08, 0.35);
-    add_beam(b, {from, y, 1.25}, {top_x, y, sill + 1.0}, 0.06, 0.06);
-    add_beam(b, {top_x, y, sill + 1.0}, {top_x + 1.7, y, sill + 1.0}, 0.06, 0.06);
+    add_beam(b, {from, y, 0.25}, {top_x, y, sill_m - 0.05}, 0.08, 0.35);
+    add_beam(b, {from, y, 1.25}, {top_x, y, sill_m + 1.0}, 0.06, 0.06);
+    add_beam(b, {top_x, y, sill_m + 1.0}, {top_x + stairs_platform_m, y, sill_m + 1.0}, 0.06, 0.06);
     for (const double x : {from, from + 1.3, from + 2.6, top_x, top_x + 1.65}) {
-      const double z = std::min(0.25 + (x - from) * (sill - 0.3) / (top_x - from), sill);
+      const double z = std::min(0.25 + (x - from) * (sill_m - 0.3) / (top_x - from), sill_m);
       add_beam(b, {x, y, z}, {x, y, z + 1.0}, 0.05, 0.05);
     }
-    add_beam(b, {top_x + 0.2, y, 0.7}, {top_x + 0.2, y, sill - 0.05}, 0.14, 0.14);
-    add_beam(b, {top_x + 1.5, y, 0.7}, {top_x + 0.3, y, sill - 0.05}, 0.1, 0.1);
+    add_beam(b, {top_x + 0.2, y, 0.7}, {top_x + 0.2, y, sill_m - 0.05}, 0.14, 0.14);
+    add_beam(b, {top_x + 1.5, y, 0.7}, {top_x + 0.3, y, sill_m - 0.05}, 0.1, 0.1);
   }
 }
 

@@ -43,6 +43,23 @@ enum class MaterialId : std::uint16_t {
   cone_orange,
   retro_sheeting_ra1,
   grass_green,
+  sign_face_yellow,
+  sign_face_red,
+  sign_face_black,
+  marker_blue,
+  light_lens,
+  tunnel_concrete,
+  floor_vinyl,
+  wood,
+  cardboard,
+  steel_orange,
+  brick,
+  plaster,
+  car_paint_dark,
+  soil,
+  rock,
+  bark,
+  foliage,
   count
 };
 

@@ -20,7 +20,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 void add_buildings(Assembly& a, const Ground& ground, bool with_surroundings) {
-  Terminal terminal = make_terminal(ground.height_m(0, l::facade_y_m));
+  Terminal terminal = make_stand_terminal(ground.height_m(0, l::facade_y_m));
   a.put(a.mesh(std::move(terminal.building)), Label::building);
   a.put(a.mesh(std::move(terminal.glass)), Label::glass);
   if (with_surroundings) {
@@ -95,8 +95,8 @@ void add_parked_vehicles(Assembly& a) {
     a.stand(k == 3 ? empty : loaded, Label::ground_equipment, l::neighbour_west_x_m - 18.4, 16 + 3.6 * k, 0.5 * pi);
   }
   a.stand(a.mesh("catering_truck", add_catering_truck), Label::vehicle, l::neighbour_east_x_m + 14, 22, -0.5 * pi);
-  a.stand(a.mesh("passenger_stairs", add_passenger_stairs), Label::ground_equipment, l::neighbour_west_x_m + 15, 20,
-          0.5 * pi);
+  a.stand(a.mesh("passenger_stairs", [](MeshBuilder& b) { add_passenger_stairs(b); }), Label::ground_equipment,
+          l::neighbour_west_x_m + 15, 20, 0.5 * pi);
 }
 
 void add_chocks(Assembly& a, const AircraftType& type) {
@@ -134,6 +134,12 @@ StandOptions read(const core::ConfigNode& node) {
 
 }  // namespace
 
+BridgeSite stand_bridge_site(const Ground& ground) {
+  return {.rotunda_m = {l::rotunda_x_m, l::rotunda_y_m},
+          .terminal_m = {l::rotunda_x_m, l::facade_y_m - 0.02},
+          .floor_z_m = ground.height_m(0, l::facade_y_m) + l::boarding_floor_z_m};
+}
+
 Scene make_stand(const StandOptions& options, std::uint64_t seed) {
   Scene scene;
   scene.name = "stand";
@@ -152,10 +158,10 @@ Scene make_stand(const StandOptions& options, std::uint64_t seed) {
   add_buildings(a, *ground, options.with_surroundings);
 
   const AircraftType& type = airbus_a320();
-  const core::SE3 T_world_aircraft = park(type, *ground, 0, l::nose_y_m);
-  a.put(a.mesh(make_jet_bridge(type, T_world_aircraft, *ground)), Label::jet_bridge);
+  const core::SE3 T_world_aircraft = park(type, *ground, 0, l::nose_y_m, pi / 2);
+  a.put(a.mesh(make_jet_bridge(stand_bridge_site(*ground), type, T_world_aircraft, *ground)), Label::jet_bridge);
   if (options.with_aircraft) {
-    a.put(a.mesh(make_aircraft(type)), Label::aircraft, T_world_aircraft);
+    a.put(a.mesh(make_aircraft(type, /*open_left_door=*/0)), Label::aircraft, T_world_aircraft);
     add_chocks(a, type);
   }
   if (options.with_equipment) {

@@ -105,6 +105,7 @@ TEST(Firing, VelodyneAzimuthIncludesTheSpinInsideTheCycle) {
 TEST(Firing, SweepsBeginWhereTheProfileSaysAndTurnClockwise) {
   for (const std::string& name : profile_names()) {
     const Profile& p = profile(name);
+    if (p.by_prism()) continue;  // has no head that turns
     const FiringTable firing(p, mode_of(p, 0, 0));
     const SweepSpan sweep = firing.sweep(2);
     const double step = 2 * M_PI / static_cast<double>(sweep.cycles), start = p.azimuth_start_deg * rad;
@@ -117,9 +118,10 @@ TEST(Firing, SweepsBeginWhereTheProfileSaysAndTurnClockwise) {
     const Cycle quarter = firing.cycle(sweep, sweep.cycles / 4);
     const Vector3d expected(-std::sin(start), -std::cos(start), 0);
     double along = 0;
-    for (std::size_t c = 0; c < p.channels(); ++c)
-      along += firing.direction(quarter, c).normalized().dot(expected) / static_cast<double>(p.channels());
-    EXPECT_GT(along, 0.9) << name;
+    for (std::size_t c = 0; c < firing.channels(); ++c)
+      along += firing.direction(quarter, c).normalized().dot(expected) / static_cast<double>(firing.channels());
+    EXPECT_GT(along, name == "ouster-os0-128-rev7" ? 0.85 : 0.9)
+        << name;  // its beams rise and fall by up to 45 degrees
   }
   EXPECT_EQ(profile("vlp-16").azimuth_start_deg, 180);
 }
@@ -134,20 +136,42 @@ TEST(Firing, TilesHoldEveryFiringOnceAndNeighboursTogether) {
       const std::vector<std::uint32_t> tiles = firing.tiles(cycles);
       ASSERT_EQ(tiles.size() % 16, 0u);
       if (cycles % 16 == 0) {  // hardly a place is traced in vain
-        EXPECT_LE(8 * tiles.size(), 9 * cycles * p.channels()) << name;
+        EXPECT_LE(8 * tiles.size(), 9 * cycles * firing.channels()) << name;
       }
       for (std::size_t i = 0; i < tiles.size(); ++i) {
         if (tiles[i] == raycast::SweepTracer::no_ray) continue;
         seen.insert(tiles[i]);
         const auto direction = [&](std::uint32_t index) {
-          return firing.direction(firing.cycle(sweep, index / static_cast<std::uint32_t>(p.channels())),
-                                  index % p.channels());
+          return firing.direction(firing.cycle(sweep, index / static_cast<std::uint32_t>(firing.channels())),
+                                  index % firing.channels());
         };
-        EXPECT_GT(direction(tiles[i]).dot(direction(tiles[i / 16 * 16])), std::cos(7 * rad));
+        EXPECT_GT(direction(tiles[i]).dot(direction(tiles[i / 16 * 16])), std::cos(7 * rad)) << name;
       }
-      EXPECT_EQ(seen.size(), cycles * p.channels());
+      EXPECT_EQ(seen.size(), cycles * firing.channels());
       EXPECT_EQ(std::set<std::uint32_t>(seen.begin(), seen.end()).size(), seen.size());
     }
+  }
+}
+
+TEST(Firing, ASensorThatStartsLaterFiresAllLaterAndAlike) {
+  for (const char* name : {"ouster-os1-64-gen2", "vlp-16", "livox-mid-40"}) {
+    const Profile& p = profile(name);
+    const core::Duration start = core::duration_from_s(0.0371);
+    const Mode mode = mode_of(p, 0, 0);
+    const FiringTable prompt(p, mode), late(p, mode, SpinJitter({}, 1, "test"), {}, start);
+    for (const std::int64_t k : {0, 5}) {
+      const SweepSpan a = prompt.sweep(k), b = late.sweep(k);
+      ASSERT_EQ(a.cycles, b.cycles);
+      EXPECT_EQ(b.begin - a.begin, start);
+      EXPECT_EQ(b.end - a.end, start);
+      for (const std::int64_t c : {std::int64_t{0}, a.cycles / 3, a.cycles - 1}) {
+        EXPECT_EQ(late.cycle(b, c).t - prompt.cycle(a, c).t, start);
+        EXPECT_EQ(late.direction(late.cycle(b, c), 0), prompt.direction(prompt.cycle(a, c), 0)) << name;
+      }
+    }
+    EXPECT_EQ(late.sweeps_until(prompt.sweep(4).end), 4);
+    EXPECT_EQ(late.sweeps_until(prompt.sweep(4).end + start), 5);
+    EXPECT_EQ(late.sweeps_until(core::time_from_s(0.01)), 0);
   }
 }
 
