@@ -10,6 +10,13 @@ const std::vector<std::string>& common_scene_keys() {
   return keys;
 }
 
+std::vector<core::OptionDescription> describe_common_options() {
+  std::vector<core::OptionDescription> options = describe_meshes();
+  const std::vector<core::OptionDescription> actors = describe_actors();
+  options.insert(options.end(), actors.begin(), actors.end());
+  return options;
+}
+
 const SceneEntry& scene_of(const core::ConfigNode& node) {
   const core::ConfigNode kind = node.child("kind");
   const std::string name = kind.scalar("kind");
