@@ -144,12 +144,12 @@ void Neighbours::settle(const CentreField& field, const std::vector<std::uint8_t
   agree_across(s, n - channels_, channels_, across.data());
   // The first and the last cycle have no neighbour on one side.
   for (std::size_t i = channels_; i + channels_ < n; ++i) settled[i] = across[i] & across[i - channels_];
-  for (std::int64_t c = 0; c < channels; ++c) {
-    const std::int32_t above = above_channel_[static_cast<std::size_t>(c)];
-    if (above < 0) continue;
-    const std::int64_t shift = above_cycles_[static_cast<std::size_t>(c)];
-    for (std::int64_t k = 0; k < cycles; ++k) {
-      const std::int64_t other = k + shift;
+  // Cycle by cycle: what is looked at together lies together.
+  for (std::int64_t k = 0; k < cycles; ++k)
+    for (std::int64_t c = 0; c < channels; ++c) {
+      const std::int32_t above = above_channel_[static_cast<std::size_t>(c)];
+      if (above < 0) continue;
+      const std::int64_t other = k + above_cycles_[static_cast<std::size_t>(c)];
       const auto i = static_cast<std::size_t>(k * channels + c);
       const bool there = other >= 0 && other < cycles;
       const auto j = static_cast<std::size_t>(there ? other * channels + above : 0);
@@ -157,7 +157,6 @@ void Neighbours::settle(const CentreField& field, const std::vector<std::uint8_t
       settled[i] = 0;
       if (there) settled[j] = 0;
     }
-  }
   for (std::size_t i = 0; i < n; ++i) settled[i] &= !unsettled_material[field.material[i]];
 }
 
