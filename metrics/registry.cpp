@@ -108,6 +108,9 @@ constexpr MetricEntry kMetrics[] = {
      "Share of sweeps whose exact geometry leaves the motion inside the sweep free: smallest eigenvalue of the "
      "difference's Schur complement below 5e-5.",
      kDegeneracy, "degeneracy"},
+    {"oracle_lambda_min_6dof_median", "1", false, kNone,
+     "Median over sweeps of the smallest scaled eigenvalue of the 6-DOF block of exact normals.", kDegeneracy,
+     "degeneracy"},
     {"solve_lambda_min_6dof_median", "1", false, kNone,
      "Median over sweeps of the smallest scaled eigenvalue of the 6-DOF block of the residuals that the method solved "
      "with.",

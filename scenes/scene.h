@@ -67,7 +67,7 @@ struct Instance {
   core::SE3 T_parent_mesh = core::SE3::Identity();  ///< parent = world, or the actor's frame
 };
 
-/// The motion of an actor in closed form: any pose, exactly, at any time.
+/// The motion of an actor, in closed form or as a certified solution: its pose at any time.
 class ActorMotion {
  public:
   virtual ~ActorMotion() = default;
@@ -80,7 +80,9 @@ class ActorMotion {
 struct Actor {
   std::string name;
   std::shared_ptr<const ActorMotion> motion;
-  double radius_m = 0;  ///< of a sphere around the actor's origin that holds all its meshes
+  double radius_m = 0;      ///< of a sphere around the actor's origin that holds all its meshes
+  std::string where = {};   ///< "scenario.yaml:14" where a scenario asks for it; empty when the scene's kind does
+  std::int32_t group = -1;  ///< actors of one group belong together (a train) and may touch; -1 = belongs to none
 };
 
 /// Height over the macro surface [m], with its gradient: texture and joints of the pavement, applied after tracing.

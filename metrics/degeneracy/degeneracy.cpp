@@ -150,8 +150,10 @@ void put_scores(const std::string& prefix, const DetectorScores& scores, bool wi
 
 void put_oracle_rows(const std::vector<SweepVerdict>& oracle, RowSet& rows) {
   std::size_t known = 0, pose = 0, difference = 0;
+  std::vector<double> smallest;
   for (const SweepVerdict& verdict : oracle) {
     known += verdict.blocks.has_value();
+    if (verdict.blocks) smallest.push_back(verdict.blocks->pose.min());
     pose += verdict.pose == DegeneracyClass::degenerate;
     difference += verdict.difference == DegeneracyClass::degenerate;
   }
@@ -160,6 +162,7 @@ void put_oracle_rows(const std::vector<SweepVerdict>& oracle, RowSet& rows) {
   rows.put("oracle_degenerate_percent", 100.0 * static_cast<double>(pose) / static_cast<double>(known), note);
   rows.put("oracle_degenerate_12dof_percent", 100.0 * static_cast<double>(difference) / static_cast<double>(known),
            note);
+  rows.put("oracle_lambda_min_6dof_median", quantile(smallest, 0.5), note);
 }
 
 /// Medians of the smallest eigenvalues and condition numbers.

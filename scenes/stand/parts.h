@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scenes/bridge/bridge.h"
+#include "scenes/buildings/terminal.h"
 #include "scenes/paving/pavement.h"
 #include "scenes/primitives/mesh_builder.h"
 
@@ -10,11 +11,7 @@ namespace tarmac::scenes {
 /// Lead-in lines, stop bars, stand numbers, safety lines and service roads.
 Mesh make_markings(const SlabSurface& slabs);
 
-/// Walls, columns, slabs and roofs, and apart from them the panes (label glass).
-struct Terminal {
-  Mesh building, glass;
-};
-Terminal make_terminal(double z0_m);
+Terminal make_stand_terminal(double z0_m);
 Mesh make_hangar(double z0_m);      ///< east end of the apron
 Mesh make_cargo_shed(double z0_m);  ///< west end
 Mesh make_blast_fence(const Ground& ground);

@@ -20,7 +20,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 void add_buildings(Assembly& a, const Ground& ground, bool with_surroundings) {
-  Terminal terminal = make_terminal(ground.height_m(0, l::facade_y_m));
+  Terminal terminal = make_stand_terminal(ground.height_m(0, l::facade_y_m));
   a.put(a.mesh(std::move(terminal.building)), Label::building);
   a.put(a.mesh(std::move(terminal.glass)), Label::glass);
   if (with_surroundings) {

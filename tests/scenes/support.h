@@ -1,6 +1,7 @@
 /// Scenes to test, and their triangles in world coordinates.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -36,7 +37,8 @@ void for_each_static_triangle(const scenes::Scene& scene, const Accept& accept, 
 }
 
 inline bool on_the_ground(scenes::Label label) {
-  return label == scenes::Label::pavement || label == scenes::Label::marking || label == scenes::Label::vegetation;
+  return label == scenes::Label::pavement || label == scenes::Label::marking ||
+         label == scenes::Label::vegetation || label == scenes::Label::terrain;
 }
 
 /// The part of a triangle between two heights above the ground, as a polygon seen from above (empty: none).

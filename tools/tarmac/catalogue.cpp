@@ -12,6 +12,7 @@
 #include "estimators/registry.h"
 #include "metrics/registry.h"
 #include "scenarios/sweep_file.h"
+#include "scenes/actors/actors.h"
 #include "scenes/aircraft/aircraft.h"
 #include "scenes/equipment/equipment.h"
 #include "scenes/registry.h"
@@ -139,9 +140,24 @@ std::string describe_scene(const std::string& name) {
     const auto built = scenes::make_scene(core::ConfigNode::parse("kind: " + name + "\n", "describe scene " + name), 1);
     return fmt::format("{}: {}\n{} triangles after instancing, {} materials, {} actors\n{}", scene->name,
                        scene->summary, built.triangle_count(), built.materials.size(), built.actors.size(),
-                       options_text(scene->describe()));
+                       options_text(scene->describe()) + "of every kind, " +
+                           options_text(scenes::describe_common_options()));
   }
   unknown("scene", name, scene_entries());
+}
+
+std::vector<Entry> actor_entries() {
+  std::vector<Entry> entries;
+  for (const scenes::ActorKindSummary& kind : scenes::actor_summaries()) entries.push_back({kind.name, kind.summary});
+  return entries;
+}
+
+std::string describe_actor(const std::string& name) {
+  for (const Entry& entry : actor_entries())
+    if (entry.name == name)
+      return fmt::format("{}: {}\none entry of a scene's `actors:` list\n{}", name, entry.summary,
+                         options_text(scenes::describe_actor(name)));
+  unknown("actor", name, actor_entries());
 }
 
 std::vector<Entry> aircraft_entries() {
@@ -250,6 +266,7 @@ const std::vector<Kind>& kinds() {
       {"sweeps", "sweep", sweep_entries, describe_sweep},
       {"gates", "gate", gate_entries, describe_gate},
       {"scenes", "scene", scene_entries, describe_scene},
+      {"actors", "actor", actor_entries, describe_actor},
       {"aircraft", "aircraft", aircraft_entries, describe_aircraft},
       {"equipment", "equipment", equipment_entries, describe_equipment},
       {"motions", "motion", motion_entries,
