@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kPictureWidth_px = 1600, kPictureHeight_px = 900;
-constexpr int kSheetQuality_percent = 80;
+constexpr int kSheetQuality_percent = 78;
 
 /// A thing on a flat floor of concrete, in a scene of its own, its front to -x.
 struct Showroom {
@@ -105,7 +105,7 @@ reports::Image sheet_of_exhibits(const std::vector<std::string>& names, Showroom
 }
 
 reports::Image sheet_of_scenes() {
-  constexpr int columns = 4, width_px = 440, height_px = 260;
+  constexpr int columns = 4, width_px = 420, height_px = 240;
   std::vector<reports::Tile> tiles;
   for (const auto* entry : scenes::scenes()) {
     const scenes::Scene scene = default_scene(entry->name);
