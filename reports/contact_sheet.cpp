@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kScreen_dpi = 72;  // a font of n points is then n pixels high
-const Vector3d kFrontLeft = Vector3d(0.80, 0.62, 0.26).normalized();
+const Vector3d kFrontLeft = Vector3d(-0.74, -0.67, 0.21).normalized();
 
 Image white(int width_px, int height_px) {
   return {width_px, height_px, std::vector<std::uint8_t>(std::size_t(3) * width_px * height_px, 255)};
@@ -34,15 +34,21 @@ void paste(Image& onto, const Image& image, int x_px, int y_px) {
   }
 }
 
-/// Directions to the eye and up; pictures of the side and from above have the nose on the left.
-FlatView side_view(const Exhibit& e, double m_per_px) {
-  return {e.box.center(), Vector3d::UnitY(), Vector3d::UnitZ(), m_per_px, 0, 0};
+Eigen::AlignedBox3d box_of(const Exhibit& exhibit) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : exhibit.points) box.extend(p);
+  return box;
 }
-FlatView front_view(const Exhibit& e, double m_per_px) {
-  return {e.box.center(), Vector3d::UnitX(), Vector3d::UnitZ(), m_per_px, 0, 0};
+
+/// Directions to the eye and up; pictures of the side and from above have the front on the left.
+FlatView side_view(const Vector3d& middle, double m_per_px) {
+  return {middle, -Vector3d::UnitY(), Vector3d::UnitZ(), m_per_px, 0, 0};
 }
-FlatView plan_view(const Exhibit& e, double m_per_px) {
-  return {e.box.center(), Vector3d::UnitZ(), -Vector3d::UnitY(), m_per_px, 0, 0};
+FlatView front_view(const Vector3d& middle, double m_per_px) {
+  return {middle, -Vector3d::UnitX(), Vector3d::UnitZ(), m_per_px, 0, 0};
+}
+FlatView plan_view(const Vector3d& middle, double m_per_px) {
+  return {middle, Vector3d::UnitZ(), Vector3d::UnitY(), m_per_px, 0, 0};
 }
 
 Image outline(Stills& stills, FlatView view, double width_m, double height_m) {
@@ -126,26 +132,26 @@ Image contact_sheet(const std::vector<Tile>& tiles, int columns) {
 
 Image exhibit_picture(const Exhibit& exhibit, int width_px, int height_px) {
   Stills stills(*exhibit.scene, core::Time{});
-  const Vector3d size = exhibit.box.sizes();
+  const Vector3d size = box_of(exhibit).sizes(), middle = box_of(exhibit).center();
   constexpr int gap = 16;
   const double m_per_px = 1.04 * (size.x() + 2 * size.y()) / (width_px - 4 * gap);
-  const Image outlines = beside({outline(stills, side_view(exhibit, m_per_px), size.x(), size.z()),
-                                 outline(stills, front_view(exhibit, m_per_px), size.y(), size.z()),
-                                 outline(stills, plan_view(exhibit, m_per_px), size.x(), size.y())},
+  const Image outlines = beside({outline(stills, side_view(middle, m_per_px), size.x(), size.z()),
+                                 outline(stills, front_view(middle, m_per_px), size.y(), size.z()),
+                                 outline(stills, plan_view(middle, m_per_px), size.x(), size.y())},
                                 gap);
   const int lower = std::min(outlines.height_px, height_px / 2);
-  return stack({stills.view(exhibit.box, kFrontLeft, width_px, height_px - lower - gap), outlines}, gap);
+  return stack({stills.view(exhibit.points, kFrontLeft, width_px, height_px - lower - gap), outlines}, gap);
 }
 
 Image exhibit_tile(const Exhibit& exhibit, double m_per_px, int width_px, int height_px, int outline_height_px) {
   Stills stills(*exhibit.scene, core::Time{});
-  const Vector3d size = exhibit.box.sizes();
-  const Image outlines = beside({outline(stills, side_view(exhibit, m_per_px), size.x(), size.z()),
-                                 outline(stills, front_view(exhibit, m_per_px), size.y(), size.z())},
+  const Vector3d size = box_of(exhibit).sizes(), middle = box_of(exhibit).center();
+  const Image outlines = beside({outline(stills, side_view(middle, m_per_px), size.x(), size.z()),
+                                 outline(stills, front_view(middle, m_per_px), size.y(), size.z())},
                                 10);
   Image tile = white(width_px, height_px);
   const int picture_px = height_px - outline_height_px;
-  paste(tile, stills.view(exhibit.box, kFrontLeft, width_px, picture_px), 0, 0);
+  paste(tile, stills.view(exhibit.points, kFrontLeft, width_px, picture_px), 0, 0);
   paste(tile, outlines, std::max(0, (width_px - outlines.width_px) / 2),
         height_px - std::min(outline_height_px, outlines.height_px));
   return tile;

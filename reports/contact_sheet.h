@@ -24,12 +24,12 @@ Image contact_sheet(const std::vector<Tile>& tiles, int columns);
 /// Dark letters on what is there, their lower left corner at (x, y from the top).
 void draw_text(Image& image, int x_px, int y_px, const std::string& text, int size_px);
 
-/// A thing alone on a flat floor, and where it is.
+/// A thing alone on a flat floor, its front to -x (so that the sun stands over its left shoulder).
 struct Exhibit {
   const scenes::Scene* scene = nullptr;
-  Eigen::AlignedBox3d box;  ///< of the thing, world
+  std::vector<Eigen::Vector3d> points;  ///< of the thing, world: what is to be seen
 };
-/// From the front left, at eye height and a little above; below it outlines from the left side, the front and above, at
+/// From the front left, a little above; below it outlines from the left side, the front and above, at
 /// one scale.
 Image exhibit_picture(const Exhibit& exhibit, int width_px, int height_px);
 /// For a tile: the same view; below it the outlines from the left and the front, `m_per_px` chosen by the caller so

@@ -32,12 +32,14 @@ Image Stills::top(const TopView& view) {
   return state_->draw(renderer, view.width_px, view.height_px);
 }
 
-Image Stills::view(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& direction, int width_px, int height_px) {
-  const vtkSmartPointer<vtkRenderer> renderer = state_->new_renderer(/*night=*/false);
+Image Stills::view(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& direction, int width_px,
+                   int height_px) {
+  constexpr double room = 1.06;
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : points) box.extend(p);
   std::vector<Eigen::Vector3d> corners;
-  for (int k = 0; k < 8; ++k) {
-    corners.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k)) - box.center());
-  }
+  for (const Eigen::Vector3d& p : points) corners.push_back(room * (p - box.center()));
+  const vtkSmartPointer<vtkRenderer> renderer = state_->new_renderer(/*night=*/false);
   look_at_corners(renderer, box.center(), corners, direction, double(width_px) / height_px);
   return state_->draw(renderer, width_px, height_px);
 }

@@ -65,8 +65,9 @@ class Stills {
   /// A bird's view from the south-west that holds the scene's rectangle of interest.
   Image overview(int width_px, int height_px);
   Image top(const TopView& view);
-  /// As near as `box` (world) allows, from `direction` (unit vector from the scene to the eye).
-  Image view(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& direction, int width_px, int height_px);
+  /// As near as `points` (world) allow, with a little room around them, from `direction` (unit vector from the scene to
+  /// the eye).
+  Image view(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& direction, int width_px, int height_px);
   /// Outlines: everything but the ground in one dark colour on white.
   Image silhouette(const FlatView& view);
   /// The scene dimmed, with the static points of a map over it coloured by their error. Same camera as `overview`.

@@ -9,15 +9,6 @@ namespace tarmac::scenes {
 
 namespace {
 
-void add_mesh(MeshBuilder& b, const Mesh& mesh) {
-  std::vector<std::uint32_t> index;
-  for (const Eigen::Vector3f& p : mesh.vertices) index.push_back(b.vertex(p.cast<double>()));
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [i, j, k] = mesh.triangles[t];
-    b.use(static_cast<MaterialId>(mesh.materials[t])).triangle(index[i], index[j], index[k]);
-  }
-}
-
 // Sizes of the bodies: makers' and operators' figures; containers by their standard.
 const std::vector<EquipmentEntry>& entries() {
   using enum Label;
@@ -43,9 +34,9 @@ const std::vector<EquipmentEntry>& entries() {
       {"hydrant-dispenser", "pumps fuel from a pit", vehicle, 7.5, 2.4, 3.0, 0.40, add_hydrant_dispenser},
       {"lavatory-truck", "waste truck with a servicing platform", vehicle, 7.0, 2.2, 2.8, 0.42, add_lavatory_truck},
       {"marshaller", "person of 1.75 m in high-visibility clothing with two wands", person, 0.27, 0.5, 1.75, 0.5,
-       [](MeshBuilder& b) { add_mesh(b, make_person({})); }},
+       [](MeshBuilder& b) { add_person(b, {}); }},
       {"marshaller-walking", "the same in mid-stride", person, 0.9, 0.5, 1.70, 0.5,
-       [](MeshBuilder& b) { add_mesh(b, make_person({.gait_phase_rad = 1.2, .gait = 1})); }},
+       [](MeshBuilder& b) { add_person(b, {.gait_phase_rad = 1.2, .gait = 1}); }},
       {"passenger-stairs", "truck stairs, sill at 3.4 m", ground_equipment, 5.82, 2.16, 4.4, 0.05,
        [](MeshBuilder& b) { add_passenger_stairs(b); }},
       {"pushback-tractor", "conventional tractor for narrow bodies", vehicle, 6.0, 2.7, 2.35, 0.25,

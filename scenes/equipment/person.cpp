@@ -218,8 +218,7 @@ std::vector<core::SE3> person_pose(const PersonPosture& posture) {
   return T;
 }
 
-Mesh make_person(const PersonPosture& posture) {
-  MeshBuilder b("person");
+void add_person(MeshBuilder& b, const PersonPosture& posture) {
   const std::vector<PersonPart>& parts = person_parts();
   const std::vector<core::SE3> T = person_pose(posture);
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -232,6 +231,12 @@ Mesh make_person(const PersonPosture& posture) {
       b.use(static_cast<MaterialId>(mesh.materials[t])).triangle(index[i], index[j], index[k]);
     }
   }
+  b.at(core::SE3::Identity());
+}
+
+Mesh make_person(const PersonPosture& posture) {
+  MeshBuilder b("person");
+  add_person(b, posture);
   return std::move(b).build();
 }
 

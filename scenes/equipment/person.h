@@ -36,6 +36,7 @@ double person_stride_m(double gait = 1);
 std::vector<core::SE3> person_pose(const PersonPosture& posture);
 /// All parts in one mesh, for people that do not move.
 Mesh make_person(const PersonPosture& posture);
+void add_person(MeshBuilder& b, const PersonPosture& posture);
 
 /// Of a sphere around the person's origin that holds it in every posture [m].
 inline constexpr double kPersonRadius_m = 2.7;

@@ -84,9 +84,40 @@ TEST(Exhibit, OutlinesAreTrueToScaleAndWithoutTheFloor) {
   EXPECT_GT(red_at(image, 100, 50 + 12), 128) << "the floor is no part of the outline";
 }
 
+TEST(Exhibit, AViewHoldsItsPointsAndFillsThePicture) {
+  scenes::Scene scene = box_scene();
+  for (auto& material : scene.materials) material.color = {1, 0, 0};
+  scene.instances.resize(1);  // without the floor
+  Stills stills(scene, core::Time{});
+  std::vector<Eigen::Vector3d> corners;
+  for (const double x : {-2, 2}) {
+    for (const double y : {-1, 1}) {
+      for (const double z : {0, 1}) corners.emplace_back(x, y, z);
+    }
+  }
+  const Image image = stills.view(corners, Eigen::Vector3d(-0.7, -0.6, 0.3).normalized(), 300, 200);
+  int left = 300, right = 0, top = 200, bottom = 0;
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 300; ++x) {
+      const std::uint8_t* const p = &image.rgb[3 * (std::size_t(y) * 300 + x)];
+      if (p[0] < 2 * p[1] || p[0] < 2 * p[2]) continue;
+      left = std::min(left, x);
+      right = std::max(right, x);
+      top = std::min(top, y);
+      bottom = std::max(bottom, y);
+    }
+  }
+  EXPECT_GT(left, 2);
+  EXPECT_LT(right, 297);
+  EXPECT_GT(top, 2);
+  EXPECT_LT(bottom, 197);
+  EXPECT_TRUE(right - left > 260 || bottom - top > 170) << right - left << " x " << bottom - top;
+  EXPECT_NEAR(left, 299 - right, 6) << "in the middle";
+}
+
 TEST(Exhibit, ATileHasTheSizeThatWasAskedFor) {
   const scenes::Scene scene = box_scene();
-  const Exhibit exhibit{&scene, Eigen::AlignedBox3d(Eigen::Vector3d(-2, -1, 0), Eigen::Vector3d(2, 1, 1))};
+  const Exhibit exhibit{&scene, {{-2, -1, 0}, {2, -1, 0}, {2, 1, 1}, {-2, 1, 1}, {-2, -1, 1}, {2, 1, 0}}};
   const Image tile = exhibit_tile(exhibit, 0.05, 200, 160, 40);
   EXPECT_EQ(tile.width_px, 200);
   EXPECT_EQ(tile.height_px, 160);

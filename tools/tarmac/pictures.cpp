@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "core/error.h"
 #include "reports/contact_sheet.h"
@@ -20,16 +21,21 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kPictureWidth_px = 1600, kPictureHeight_px = 900;
-constexpr int kSheetQuality_percent = 80;
+constexpr int kSheetQuality_percent = 78;
 
-/// A thing on a flat floor of concrete, in a scene of its own.
+/// A thing on a flat floor of concrete, in a scene of its own, its front to -x.
 struct Showroom {
   scenes::Scene scene;
+  std::vector<Vector3d> points;
   Eigen::AlignedBox3d box;
 };
 
-void put(Showroom& room, scenes::Mesh mesh, scenes::Label label, const core::SE3& T_world_mesh) {
-  for (const Eigen::Vector3f& p : mesh.vertices) room.box.extend(T_world_mesh * p.cast<double>());
+void put(Showroom& room, scenes::Mesh mesh, scenes::Label label, const core::SE3& T_thing_mesh) {
+  const core::SE3 T_world_mesh = scenes::place(0, 0, 0, std::numbers::pi) * T_thing_mesh;
+  for (const Eigen::Vector3f& p : mesh.vertices) {
+    room.points.push_back(T_world_mesh * p.cast<double>());
+    room.box.extend(room.points.back());
+  }
   room.scene.meshes.push_back(std::move(mesh));
   room.scene.instances.push_back({static_cast<std::uint32_t>(room.scene.meshes.size() - 1), label, -1, T_world_mesh});
 }
@@ -50,7 +56,7 @@ void finish(Showroom& room) {
   room.scene.interest_max = room.box.max().head<2>();
 }
 
-/// With a person of 1.75 m beside the left (inner) engine, for scale.
+/// With a person of 1.75 m beside the left inner engine, for scale.
 Showroom show_aircraft(const std::string& name) {
   const scenes::AircraftType& type = scenes::aircraft_type(name);
   Showroom room;
@@ -69,7 +75,7 @@ Showroom show_equipment(const std::string& name) {
   put(room, scenes::make_equipment(name), entry.label, core::SE3::Identity());
   if (entry.label != scenes::Label::person) {
     put(room, scenes::make_person({}), scenes::Label::person,
-        scenes::place(0.1 * entry.length_m, room.box.max().y() + 0.7, 0, 0.6));
+        scenes::place(-0.1 * entry.length_m, -room.box.min().y() + 0.7, 0, 0.6));
   }
   finish(room);
   return room;
@@ -92,14 +98,14 @@ reports::Image sheet_of_exhibits(const std::vector<std::string>& names, Showroom
   const double m_per_px = std::max(widest_m / (width_px - 24), tallest_m / (outline_px - 8));
   std::vector<reports::Tile> tiles;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    tiles.push_back(
-        {names[k], reports::exhibit_tile({&rooms[k].scene, rooms[k].box}, m_per_px, width_px, height_px, outline_px)});
+    tiles.push_back({names[k], reports::exhibit_tile({&rooms[k].scene, rooms[k].points}, m_per_px, width_px, height_px,
+                                                     outline_px)});
   }
   return reports::contact_sheet(tiles, columns);
 }
 
 reports::Image sheet_of_scenes() {
-  constexpr int columns = 4, width_px = 440, height_px = 260;
+  constexpr int columns = 4, width_px = 420, height_px = 240;
   std::vector<reports::Tile> tiles;
   for (const auto* entry : scenes::scenes()) {
     const scenes::Scene scene = default_scene(entry->name);
@@ -110,7 +116,7 @@ reports::Image sheet_of_scenes() {
 
 reports::Image sheet_of(const std::string& kind) {
   if (kind == "scene") return sheet_of_scenes();
-  if (kind == "aircraft") return sheet_of_exhibits(scenes::aircraft_names(), show_aircraft, 3, 560, 440, 120);
+  if (kind == "aircraft") return sheet_of_exhibits(scenes::aircraft_names(), show_aircraft, 4, 520, 410, 110);
   if (kind == "equipment") {
     std::vector<std::string> names;
     for (const scenes::EquipmentEntry& entry : scenes::equipment()) names.emplace_back(entry.name);
@@ -120,7 +126,7 @@ reports::Image sheet_of(const std::string& kind) {
 }
 
 reports::Image picture_of(const Showroom& room) {
-  return reports::exhibit_picture({&room.scene, room.box}, kPictureWidth_px, kPictureHeight_px);
+  return reports::exhibit_picture({&room.scene, room.points}, kPictureWidth_px, kPictureHeight_px);
 }
 
 }  // namespace
