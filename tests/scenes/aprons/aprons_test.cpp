@@ -348,7 +348,9 @@ TEST(Pier, HasABridgeAtEachStandAndAircraftOnTheShareThatIsOccupied) {
 }
 
 TEST(RemoteStand, TakesAnA380AndLeavesItRoom) {
-  const RemoteLayout l = remote_layout({.types = {"a380", "a320"}});
+  RemoteStandOptions options;
+  options.types = {"a380", "a320"};
+  const RemoteLayout l = remote_layout(options);
   EXPECT_GE(2 * l.stands[0].half_width_m, aircraft_type("a380").span_m + 7.5);  // clearance of code F
   EXPECT_GE(2 * l.stands[1].half_width_m, aircraft_type("a320").span_m + 4.5);
   EXPECT_EQ(instances_of(make_scene(laws::node_of("remote-stand", "types: [a380]\n"), 1), Label::aircraft), 1U);
