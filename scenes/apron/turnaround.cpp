@@ -94,7 +94,7 @@ void Crew::hold(const AircraftType& type) {
   for (const Door& door : type.doors) {
     if (door.sill_m >= 0 || door.side != -1) continue;
     const double top = type.floor_z_m + door.sill_m - 0.05, skin = fuselage_half_width_m(type, door.x_m, top);
-    const bool wide = is_wide(type);
+    const bool wide = is_wide(type), aft = door.x_m > type.length_m / 2;
     const double half = wide ? container_loader_half_m : belt_loader_half_m, x = skin + 0.35 + half;
     loader_tail_m_ = std::max(loader_tail_m_, x + half);
     if (!comes(0.8)) continue;
@@ -103,12 +103,12 @@ void Crew::hold(const AircraftType& type) {
       put(
           "container_loader_" + std::to_string(top_cm), ground_equipment,
           [&](MeshBuilder& b) { add_container_loader(b, top); }, x, -door.x_m, pi);
-      containers(loader_tail_m_ + 4, -door.x_m - 2, 4);
+      if (aft) containers(loader_tail_m_ + 4, -door.x_m - 2, 4);
     } else {
       put(
           "belt_loader_" + std::to_string(top_cm), ground_equipment,
           [&](MeshBuilder& b) { add_belt_loader(b, std::max(1.3, top)); }, x, -door.x_m, pi);
-      if (-door.x_m < -type.length_m / 2) train(loader_tail_m_ + 3.2, -door.x_m - 1, 3);
+      if (aft) train(loader_tail_m_ + 3.2, -door.x_m - 1, 3);
     }
   }
 }
