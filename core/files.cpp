@@ -16,7 +16,7 @@
 
 namespace tarmac::core {
 
-void write_file(const std::filesystem::path& file, std::string_view content) {
+void write_file_in_parts(const std::filesystem::path& file, const std::function<void(const WritePart&)>& parts) {
   const std::filesystem::path part =
       file.parent_path() / fmt::format(".{}.part-{}", file.filename().string(), ::getpid());
   const auto fail = [&](const char* what) {
@@ -28,11 +28,25 @@ void write_file(const std::filesystem::path& file, std::string_view content) {
   };
   std::FILE* out = std::fopen(part.c_str(), "wb");
   if (!out) fail("cannot be created");
-  const bool written = std::fwrite(content.data(), 1, content.size(), out) == content.size() && std::fflush(out) == 0 &&
-                       ::fsync(::fileno(out)) == 0;
+  bool written = true;
+  try {
+    parts([&](std::string_view content) {
+      written = written && std::fwrite(content.data(), 1, content.size(), out) == content.size();
+    });
+  } catch (...) {
+    std::fclose(out);
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);
+    throw;
+  }
+  written = written && std::fflush(out) == 0 && ::fsync(::fileno(out)) == 0;
   const bool closed = std::fclose(out) == 0;
   if (!written || !closed) fail("cannot be written");
   if (std::rename(part.c_str(), file.c_str()) != 0) fail("cannot be put in place");
+}
+
+void write_file(const std::filesystem::path& file, std::string_view content) {
+  write_file_in_parts(file, [&](const WritePart& write) { write(content); });
 }
 
 std::string read_file(const std::filesystem::path& file) {

@@ -19,7 +19,10 @@ struct LidarSweep {
   std::vector<std::int32_t> t_ns;  ///< from `begin`, as stamped by the sensor
   std::vector<std::uint16_t> ring;
   std::vector<float> intensity;
+  /// Of merged sweeps (merged_sweeps.h): whose each point is, index into the recording's LiDARs. Empty: all `sensor`'s.
+  std::vector<std::uint16_t> point_sensor = {};
 
+  std::uint16_t sensor_of(std::size_t i) const { return point_sensor.empty() ? sensor : point_sensor[i]; }
   std::size_t size() const { return x_m.size(); }
   bool empty() const { return x_m.empty(); }
   Eigen::Vector3d point(std::size_t i) const { return {x_m[i], y_m[i], z_m[i]}; }

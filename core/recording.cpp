@@ -5,6 +5,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -244,38 +245,92 @@ std::vector<ImuSample> Recording::imu(std::size_t k) const {
   return samples;
 }
 
-void Recording::replay(const std::function<void(std::size_t, const ImuSample&)>& on_imu,
-                       const std::function<void(const LidarSweep&)>& on_sweep) const {
-  std::vector<std::vector<ImuSample>> imus;
-  for (std::size_t k = 0; k < state_->imus.size(); ++k) imus.push_back(imu(k));
-  std::vector<std::size_t> next_imu(imus.size(), 0), next_sweep(state_->lidars.size(), 0);
-  std::vector<std::optional<LidarSweep>> ahead(state_->lidars.size());
+Time Recording::sweep_begin(std::size_t i, std::size_t lidar) const {
+  return state_->lidars.at(lidar)->time(i);
+}
 
-  // Streams are merged in their stored order, also where stamps inside a stream go backwards: whoever consumes them
-  // must see the data as they were delivered.
+namespace {
+
+/// IMU samples of one stream, a chunk at a time.
+class ImuFeed {
+ public:
+  ImuFeed(const ChunkReader& reader, std::string name) : reader_(&reader), name_(std::move(name)) { fetch(); }
+  bool more() const { return next_ < samples_.size(); }
+  const ImuSample& front() const { return samples_[next_]; }
+  void pop() {
+    if (++next_ == samples_.size()) fetch();
+  }
+
+ private:
+  void fetch() {
+    next_ = 0;
+    samples_.clear();
+    while (samples_.empty() && chunk_ < reader_->size()) append_imu(samples_, reader_->read(chunk_++), name_);
+  }
+  const ChunkReader* reader_;
+  std::string name_;
+  std::vector<ImuSample> samples_;
+  std::size_t next_ = 0, chunk_ = 0;
+};
+
+/// Sweeps of one stream, one ahead.
+struct SweepFeed {
+  std::size_t count;
+  std::function<LidarSweep(std::size_t)> sweep;
+  std::size_t next = 0;
+  std::optional<LidarSweep> ahead = {};
+  void fetch() {
+    if (!ahead && next < count) ahead = sweep(next++);
+  }
+};
+
+// Streams are merged in their stored order, also where stamps inside a stream go backwards: whoever consumes them must
+// see the data as they were delivered.
+void merge_streams(std::vector<SweepFeed>& lidars, std::vector<ImuFeed>& imus,
+                   const std::function<void(std::size_t, const ImuSample&)>& on_imu,
+                   const std::function<void(const LidarSweep&)>& on_sweep) {
   while (true) {
-    std::size_t best_lidar = ahead.size();
-    for (std::size_t k = 0; k < ahead.size(); ++k) {
-      if (!ahead[k] && next_sweep[k] < sweep_count(k)) ahead[k] = sweep(next_sweep[k]++, k);
-      if (ahead[k] && (best_lidar == ahead.size() || ahead[k]->end < ahead[best_lidar]->end)) best_lidar = k;
+    SweepFeed* lidar = nullptr;
+    for (SweepFeed& feed : lidars) {
+      feed.fetch();
+      if (feed.ahead && (!lidar || feed.ahead->end < lidar->ahead->end)) lidar = &feed;
     }
-    std::size_t best_imu = imus.size();
-    for (std::size_t k = 0; k < imus.size(); ++k) {
-      if (next_imu[k] < imus[k].size() &&
-          (best_imu == imus.size() || imus[k][next_imu[k]].t < imus[best_imu][next_imu[best_imu]].t)) {
-        best_imu = k;
-      }
-    }
-    const bool have_sweep = best_lidar < ahead.size(), have_imu = best_imu < imus.size();
-    if (!have_sweep && !have_imu) return;
-    if (have_imu && (!have_sweep || imus[best_imu][next_imu[best_imu]].t <= ahead[best_lidar]->end)) {
-      const ImuSample& sample = imus[best_imu][next_imu[best_imu]++];
-      if (on_imu) on_imu(best_imu, sample);
+    std::size_t imu = imus.size();
+    for (std::size_t k = 0; k < imus.size(); ++k)
+      if (imus[k].more() && (imu == imus.size() || imus[k].front().t < imus[imu].front().t)) imu = k;
+    const bool have_imu = imu < imus.size();
+    if (!lidar && !have_imu) return;
+    if (have_imu && (!lidar || imus[imu].front().t <= lidar->ahead->end)) {
+      if (on_imu) on_imu(imu, imus[imu].front());
+      imus[imu].pop();
     } else {
-      if (on_sweep) on_sweep(*ahead[best_lidar]);
-      ahead[best_lidar].reset();
+      if (on_sweep) on_sweep(*lidar->ahead);
+      lidar->ahead.reset();
     }
   }
+}
+
+}  // namespace
+
+void Recording::replay(const std::function<void(std::size_t, const ImuSample&)>& on_imu,
+                       const std::function<void(const LidarSweep&)>& on_sweep) const {
+  std::vector<SweepFeed> lidars;
+  for (std::size_t k = 0; k < state_->lidars.size(); ++k)
+    lidars.push_back({sweep_count(k), [this, k](std::size_t i) { return sweep(i, k); }});
+  std::vector<ImuFeed> imus;
+  for (std::size_t k = 0; k < state_->imus.size(); ++k)
+    imus.emplace_back(*state_->imus[k], (state_->folder / imu_file(k)).string());
+  merge_streams(lidars, imus, on_imu, on_sweep);
+}
+
+void Recording::replay(std::size_t count, const std::function<LidarSweep(std::size_t)>& sweep,
+                       const std::function<void(std::size_t, const ImuSample&)>& on_imu,
+                       const std::function<void(const LidarSweep&)>& on_sweep) const {
+  std::vector<SweepFeed> lidars = {{count, sweep}};
+  std::vector<ImuFeed> imus;
+  for (std::size_t k = 0; k < state_->imus.size(); ++k)
+    imus.emplace_back(*state_->imus[k], (state_->folder / imu_file(k)).string());
+  merge_streams(lidars, imus, on_imu, on_sweep);
 }
 
 }  // namespace tarmac::core

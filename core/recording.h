@@ -50,9 +50,15 @@ class Recording {
   std::size_t sweep_count(std::size_t lidar = 0) const;
   /// May be called from several threads.
   LidarSweep sweep(std::size_t i, std::size_t lidar = 0) const;
+  /// As stamped, without reading the sweep.
+  Time sweep_begin(std::size_t i, std::size_t lidar = 0) const;
   std::vector<ImuSample> imu(std::size_t k = 0) const;
   /// Calls back in order of availability: a sweep at its last firing, an IMU sample at its stamp, IMU first on ties.
   void replay(const std::function<void(std::size_t imu, const ImuSample&)>& on_imu,
+              const std::function<void(const LidarSweep&)>& on_sweep) const;
+  /// The same with other sweeps in place of the recorded ones: `count` of them, made one after the other.
+  void replay(std::size_t count, const std::function<LidarSweep(std::size_t)>& sweep,
+              const std::function<void(std::size_t imu, const ImuSample&)>& on_imu,
               const std::function<void(const LidarSweep&)>& on_sweep) const;
 
  private:

@@ -67,6 +67,10 @@ struct EstimatorEntry {
   std::unique_ptr<Estimator> (*make)(const core::ConfigNode& options, const EstimatorContext& context);
   std::vector<core::OptionDescription> (*describe)();
   std::string (*resolve)(const core::ConfigNode& options);  ///< every option written out, indented by 4
+  /// Of a rig with several LiDARs: false, their sweeps come merged, in the body's frame (core/merged_sweeps.h), and
+  /// EstimatorContext::rig has one LiDAR there; true, they come as recorded, each LiDAR's own, in order of their ends, and
+  /// what add() returns of the first LiDAR's counts.
+  bool raw_lidars = false;
 };
 
 /// make/describe/resolve of an estimator class with a constructor (Options, EstimatorContext).

@@ -7,10 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <map>
 #include <optional>
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/merged_sweeps.h"
 
 namespace tarmac::estimators {
 namespace {
@@ -60,12 +62,14 @@ std::size_t drop_non_finite(core::LidarSweep& sweep) {
     sweep.t_ns[kept] = sweep.t_ns[i];
     sweep.ring[kept] = sweep.ring[i];
     sweep.intensity[kept] = sweep.intensity[i];
+    if (!sweep.point_sensor.empty()) sweep.point_sensor[kept] = sweep.point_sensor[i];
     ++kept;
   }
   const std::size_t dropped = sweep.size() - kept;
   for (std::vector<float>* column : {&sweep.x_m, &sweep.y_m, &sweep.z_m, &sweep.intensity}) column->resize(kept);
   sweep.t_ns.resize(kept);
   sweep.ring.resize(kept);
+  if (!sweep.point_sensor.empty()) sweep.point_sensor.resize(kept);
   return dropped;
 }
 
@@ -92,13 +96,18 @@ class Runner {
          const core::Progress& progress, const DiagnosticsSink& sink)
       : entry_(entry), estimator_(estimator), level_(level), sweeps_(sweeps), progress_(progress), sink_(sink) {}
 
-  void run(const core::Recording& recording, RunResult& result) {
-    recording.replay(
+  /// `source`: a recording, or its sweeps merged.
+  template <class Source>
+  void run(const Source& source, RunResult& result) {
+    source.replay(
         [&](std::size_t k, const core::ImuSample& sample) {
           if (k == 0) on_imu(sample);
         },
         [&](const core::LidarSweep& sweep) {
-          if (sweep.sensor == 0) on_sweep(sweep, result);
+          if (sweep.sensor == 0)
+            on_sweep(sweep, result);
+          else if (entry_.raw_lidars)
+            on_other_sweep(sweep, result);
         });
     if (dropped_imu_ > 0) {
       result.log.push_back(
@@ -157,6 +166,22 @@ class Runner {
     if (progress_) progress_(static_cast<double>(seen_) / static_cast<double>(sweeps_), note());
   }
 
+  /// Of a LiDAR beside the first, for a method that wants them as they are: no result is expected of it.
+  void on_other_sweep(core::LidarSweep sweep, RunResult& result) {
+    std::optional<Time>& last_end = last_end_of_[sweep.sensor];
+    if ((last_end && sweep.begin < *last_end) || sweep.end < sweep.begin) {
+      result.log.push_back(
+          fmt::format("lidar{} sweep {}: dropped, it begins before its predecessor ended or ends before it begins",
+                      sweep.sensor, sweep.index));
+      return;
+    }
+    last_end = sweep.end;
+    if (const std::size_t dropped = drop_non_finite(sweep); dropped > 0)
+      result.log.push_back(fmt::format("lidar{} sweep {}: {} points dropped, their coordinates are not finite",
+                                       sweep.sensor, sweep.index, dropped));
+    timed([&] { estimator_.add(sweep); });
+  }
+
   std::string note() const {
     return fmt::format("sweep {} of {}, {:.1f} ms a sweep", seen_, sweeps_,
                        total_wall_ms_ / static_cast<double>(seen_));
@@ -203,6 +228,7 @@ class Runner {
   const core::Progress& progress_;
   const DiagnosticsSink& sink_;
   std::optional<Time> last_imu_, last_end_;
+  std::map<std::uint16_t, std::optional<Time>> last_end_of_;  // of LiDARs beside the first
   double wall_ms_ = 0, cpu_ms_ = 0, total_wall_ms_ = 0;
 };
 
@@ -218,11 +244,21 @@ RunResult run_estimator(const core::Recording& recording, const EstimatorEntry& 
     result.estimate.status = core::RunStatus::not_initialised;
     result.estimate.message = missing;
   } else {
-    const std::unique_ptr<Estimator> estimator = entry.make(options, context);
-    if (recording.rig().lidars.size() > 1) result.log.push_back("several LiDARs: only the first one's sweeps are used");
+    const bool merge = recording.rig().lidars.size() > 1 && !entry.raw_lidars;
+    const core::MergedSweeps merged(recording);
+    EstimatorContext seen = context;
+    if (merge) seen.rig = merged.rig();
+    const std::unique_ptr<Estimator> estimator = entry.make(options, seen);
+    if (merge)
+      result.log.push_back(
+          fmt::format("{} LiDARs: their sweeps are merged, in the body's frame", recording.rig().lidars.size()));
     if (recording.rig().imus.size() > 1) result.log.push_back("several IMUs: only the first one's samples are used");
     try {
-      Runner(entry, *estimator, context.diagnostics, recording.sweep_count(), progress, sink).run(recording, result);
+      Runner runner(entry, *estimator, context.diagnostics, recording.sweep_count(), progress, sink);
+      if (merge)
+        runner.run(merged, result);
+      else
+        runner.run(recording, result);
     } catch (const EstimatorFailure& failure) {
       result.estimate.status = core::RunStatus::failed;
       result.estimate.message = failure.what();

@@ -56,6 +56,9 @@ void check(const EvaluationInput& input) {
                     "each recording with the truth that was written beside it",
                     input.sweeps.count, input.labels ? input.labels->size() : 0));
   if (!input.truth->motion) throw InputError("the truth has no motion: nothing can be evaluated against it");
+  if (input.sweeps.merged() && input.truth->rig.lidars.size() != input.sweeps.T_body_lidars.size())
+    throw InputError(fmt::format("the recording has {} LiDARs and the truth {}: they do not belong together",
+                                 input.sweeps.T_body_lidars.size(), input.truth->rig.lidars.size()));
   for (const Rig* rig : {&input.sweeps.rig, &input.truth->rig})
     if (rig->lidars.size() <= input.sweeps.lidar)
       throw InputError(
@@ -76,7 +79,8 @@ PointErrors score_points(const EvaluationInput& input, const EvaluateSettings& s
                            input.truth->rig.lidars[input.sweeps.lidar].T_body_lidar,
                            first_pose_alignment(subject.pairs),
                            se3->A.T_world_map,
-                           settings.phase_bins};
+                           settings.phase_bins,
+                           input.sweeps.true_mountings(input.truth->rig)};
   std::unordered_map<std::int64_t, std::size_t> pair_of_sweep;
   for (std::size_t k = 0; k < subject.pairs.size(); ++k) pair_of_sweep.emplace(subject.pairs[k].index, k);
 

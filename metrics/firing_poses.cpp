@@ -25,10 +25,12 @@ SE3 TruthPoses::pose(Time t) {
 }
 
 std::vector<Firing> firings_of(const sim::truth::PointLabels& labels, const PiecewiseTrajectory& estimate,
-                               const SmoothTrajectory& truth) {
+                               const SmoothTrajectory& truth, const std::vector<std::uint16_t>& point_sensor) {
   std::vector<Firing> firings;
+  const auto sensor = [&](std::size_t i) { return point_sensor.empty() ? std::uint16_t{0} : point_sensor[i]; };
   for (std::size_t i = 0; i < labels.t_ns.size(); ++i) {
-    if (i == 0 || labels.t_ns[i] != labels.t_ns[i - 1]) firings.push_back({.first = i, .last = i, .t = labels.time(i)});
+    if (i == 0 || labels.t_ns[i] != labels.t_ns[i - 1] || sensor(i) != sensor(i - 1))
+      firings.push_back({.first = i, .last = i, .t = labels.time(i), .sensor = sensor(i)});
     firings.back().last = i + 1;
   }
   TruthPoses truth_poses(truth, firings.size());

@@ -17,6 +17,7 @@ using Matrix34 = Eigen::Matrix<double, 3, 4>;
 struct Firing {
   std::size_t first = 0, last = 0;  ///< points [first, last)
   core::Time t;                     ///< true
+  std::uint16_t sensor = 0;         ///< of a merged sweep
   bool covered = false;             ///< by estimate and truth both
   core::SE3 T_world_body = core::SE3::Identity();
   core::SE3 T_map_body = core::SE3::Identity();
@@ -42,8 +43,10 @@ class TruthPoses {
   core::Kinematics anchor_;
 };
 
-/// Groups a sweep's points by true firing time and looks up both motions.
+/// Groups a sweep's points by true firing time and looks up both motions. `point_sensor`: of a merged sweep, whose each
+/// point is (LidarSweep::point_sensor); a firing is then one sensor's.
 std::vector<Firing> firings_of(const sim::truth::PointLabels& labels, const core::PiecewiseTrajectory& estimate,
-                               const core::SmoothTrajectory& truth);
+                               const core::SmoothTrajectory& truth,
+                               const std::vector<std::uint16_t>& point_sensor = {});
 
 }  // namespace tarmac::metrics

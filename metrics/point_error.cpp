@@ -31,7 +31,10 @@ class SweepScoring {
  public:
   SweepScoring(const PointScorer& scorer, const LidarSweep& sweep, const sim::truth::PointLabels& labels,
                Time reference, const SE3& T_map_body_reference)
-      : s_(scorer), sweep_(sweep), labels_(labels), firings_(firings_of(labels, scorer.estimate, scorer.truth)) {
+      : s_(scorer),
+        sweep_(sweep),
+        labels_(labels),
+        firings_(firings_of(labels, scorer.estimate, scorer.truth, sweep.point_sensor)) {
     const SE3 T_reference_world = scorer.truth.pose(reference).inverse();
     const SE3 T_reference_map = T_map_body_reference.inverse();
     A_first_ = (T_reference_world * scorer.A_first * T_map_body_reference).matrix().topRows<3>();
@@ -40,7 +43,8 @@ class SweepScoring {
     for (std::size_t f = 0; f < firings_.size(); ++f) {
       if (!firings_[f].covered) continue;
       seen_[f].estimate = (T_reference_map * (firings_[f].T_map_body * scorer.T_body_lidar_nominal)).matrix();
-      seen_[f].truth = (T_reference_world * (firings_[f].T_world_body * scorer.T_body_lidar_true)).matrix();
+      seen_[f].truth =
+          (T_reference_world * (firings_[f].T_world_body * scorer.true_mounting(firings_[f].sensor))).matrix();
     }
   }
 
@@ -67,9 +71,9 @@ class SweepScoring {
       const auto i = static_cast<std::size_t>((static_cast<double>(k) + u) * static_cast<double>(n) /
                                               static_cast<double>(std::min(wanted, n)));
       while (firings_[f].last <= i) ++f;
-      if (!firings_[f].covered || !is_finite(i)) continue;
+      if (!firings_[f].covered || !is_finite(i) || !stands(i)) continue;
       const Eigen::Vector3d x = s_.A_first * (firings_[f].T_map_body * (s_.T_body_lidar_nominal * sweep_.point(i)));
-      const Eigen::Vector3d y = firings_[f].T_world_body * (s_.T_body_lidar_true * sweep_.point(i));
+      const Eigen::Vector3d y = firings_[f].T_world_body * (s_.true_mounting(firings_[f].sensor) * sweep_.point(i));
       map.p_world_m.push_back(x.cast<float>());
       map.error_m.push_back(static_cast<float>((x - y).norm()));
       map.moving.push_back(labels_.moving[i]);
@@ -81,6 +85,9 @@ class SweepScoring {
   bool is_finite(std::size_t i) const {
     return std::isfinite(sweep_.x_m[i]) && std::isfinite(sweep_.y_m[i]) && std::isfinite(sweep_.z_m[i]);
   }
+
+  /// Something of the world is there: no ghost, no part of the own vehicle, no noise.
+  bool stands(std::size_t i) const { return sim::truth::on_a_surface(labels_.kind_of(i)); }
 
   /// The poses of the LiDAR at one firing.
   struct Seen {
@@ -96,7 +103,7 @@ class SweepScoring {
       if (!firing.covered) continue;
       Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();  // sum of (p, 1) (p, 1)^T
       for (std::size_t i = firing.first; i < firing.last; ++i) {
-        if (labels_.moving[i] || !is_finite(i)) continue;
+        if (labels_.moving[i] || !is_finite(i) || !stands(i)) continue;
         const Eigen::Vector4d p = sweep_.point(i).homogeneous();
         moments.noalias() += p * p.transpose();
       }
@@ -126,6 +133,7 @@ class SweepScoring {
       if (!is_finite(i)) continue;
       ++out.points;
       ++out.placed;
+      if (!stands(i)) continue;
       const Eigen::Vector4d p = sweep_.point(i).homogeneous();
       if (labels_.moving[i]) {
         out.moving.add((to_error[0] * p).squaredNorm());

@@ -63,6 +63,13 @@ struct PointScorer {
   core::SE3 A_first;  ///< T_world_map by the first scored reference pose
   core::SE3 A_se3;    ///< T_world_map by the rigid fit of the reference positions
   int phase_bins = 32;
+  /// Of merged sweeps, by sensor: what carries points of the nominal body frame to where the sensor truly saw them, in
+  /// place of T_body_lidar_true.
+  std::vector<core::SE3> T_body_true = {};
+
+  const core::SE3& true_mounting(std::uint16_t sensor) const {
+    return T_body_true.empty() ? T_body_lidar_true : T_body_true.at(sensor);
+  }
 };
 
 /// Distributions over static points; their sums do not depend on the order in which sweeps come.

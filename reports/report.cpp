@@ -1,6 +1,7 @@
 #include "reports/report.h"
 
 #include "core/files.h"
+#include "reports/contact_sheet.h"
 #include "reports/page.h"
 
 namespace tarmac::reports {
@@ -12,9 +13,9 @@ void write_report(const std::filesystem::path& html_file, const ReportInput& inp
   if (progress) progress(1, html_file.filename().string());
 }
 
-void render_scene(const std::filesystem::path& png_file, const scenes::Scene& scene, core::Time t, int width_px,
+void render_scene(const std::filesystem::path& file, const scenes::Scene& scene, core::Time t, int width_px,
                   int height_px) {
-  core::write_file(png_file, to_png(Stills(scene, t).overview(width_px, height_px)));
+  write_picture(file, Stills(scene, t).overview(width_px, height_px));
 }
 
 }  // namespace tarmac::reports

@@ -30,8 +30,8 @@ struct ReportInput {
 /// Renders figures and stills and writes the page, whole or not at all.
 void write_report(const std::filesystem::path& html_file, const ReportInput& input, const core::Progress& progress);
 
-/// A still of a scene as PNG (`tarmac describe scene NAME -o picture.png`).
-void render_scene(const std::filesystem::path& png_file, const scenes::Scene& scene, core::Time t, int width_px,
+/// A still of a scene as PNG or JPEG, by the extension (`tarmac describe scene NAME -o picture.png`).
+void render_scene(const std::filesystem::path& file, const scenes::Scene& scene, core::Time t, int width_px,
                   int height_px);
 
 }  // namespace tarmac::reports

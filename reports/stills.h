@@ -3,7 +3,7 @@
 /// The look is fixed: same scene, time and size, same pixels (software rasteriser; see offscreen_gl.h).
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -32,6 +32,14 @@ struct TopView {
 /// The rectangle [min_m, max_m], its height rounded to a whole pixel.
 TopView top_view(const Eigen::Vector2d& min_m, const Eigen::Vector2d& max_m, int width_px);
 
+/// A view without perspective: pictures with one `m_per_px` show things at one scale.
+struct FlatView {
+  Eigen::Vector3d middle_m;       ///< shown in the picture's middle
+  Eigen::Vector3d direction, up;  ///< unit vectors: from the scene to the eye; upward in the picture
+  double m_per_px = 0;
+  int width_px = 0, height_px = 0;
+};
+
 /// Logarithmic colour scale of errors: below `low_m` the first colour, above `high_m` the last.
 struct ErrorScale {
   double low_m = 0.01, high_m = 1;
@@ -57,6 +65,10 @@ class Stills {
   /// A bird's view from the south-west that holds the scene's rectangle of interest.
   Image overview(int width_px, int height_px);
   Image top(const TopView& view);
+  /// As near as `box` (world) allows, from `direction` (unit vector from the scene to the eye).
+  Image view(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& direction, int width_px, int height_px);
+  /// Outlines: everything but the ground in one dark colour on white.
+  Image silhouette(const FlatView& view);
   /// The scene dimmed, with the static points of a map over it coloured by their error. Same camera as `overview`.
   Image map(const metrics::MapSample& sample, const ErrorScale& scale, int width_px, int height_px);
 

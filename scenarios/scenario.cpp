@@ -20,6 +20,7 @@ struct TopLevel {
     v("surprise", scenario.surprise, "what result would be a surprise");
     v("seed", scenario.seed, "seed of all random draws when the command line gives none", {.at_least = 0});
     v("duration_s", scenario.duration_s, "length of the drive", {.above = 0, .at_most = 36000});
+    v.group("truth", scenario.truth, "what of the truth is stored that could be computed again");
   }
 };
 
@@ -33,6 +34,10 @@ std::uint64_t parse_seed(const std::string& text, const std::string& whole) {
 }
 
 }  // namespace
+
+void TruthOptions::visit(core::OptionVisitor& v) {
+  v("per_point", per_point, "store every point's true range, normal and incidence beside its label");
+}
 
 bool is_kebab(const std::string& name) {
   return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos &&

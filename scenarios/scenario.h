@@ -8,6 +8,7 @@
 ///   motion: {kind: drive, ...}
 ///   rig: {lidar: {...}, imu: {...}}
 ///   faults: {lidar: {clock_offset_ms: 5}}    # optional: what is wrong with the sensors
+///   truth: {per_point: true}                 # optional: what is stored of every point beside its label
 ///   estimators:            # optional: options of bundled methods, and foreign programs
 ///     kiss-icp: {voxel_size_m: 1.0}
 ///     my-tool: {command: [prog, '{input}', '{output}'], frame: lidar, interpolation: se3, timeout_s: 600}
@@ -22,9 +23,16 @@
 #include <vector>
 
 #include "core/config.h"
+#include "core/options.h"
 #include "core/time.h"
 
 namespace tarmac::scenarios {
+
+/// What of the truth is stored that could be computed again.
+struct TruthOptions {
+  bool per_point = false;
+  void visit(core::OptionVisitor& v);
+};
 
 struct Scenario {
   std::string name;
@@ -32,6 +40,7 @@ struct Scenario {
   std::string surprise;
   std::int64_t seed = 1;  ///< used when the command line gives none
   double duration_s = 0;
+  TruthOptions truth;
   core::ConfigNode node;  ///< the whole file, `--set` applied
   core::ConfigNode scene, motion, rig, faults, estimators;
 

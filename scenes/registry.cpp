@@ -1,10 +1,20 @@
 #include "scenes/registry.h"
 
+#include "scenes/actors/actors.h"
+#include "scenes/meshes/meshes.h"
+
 namespace tarmac::scenes {
 
 const std::vector<std::string>& common_scene_keys() {
-  static const std::vector<std::string> keys{"kind"};
+  static const std::vector<std::string> keys{"kind", "meshes", "actors"};
   return keys;
+}
+
+std::vector<core::OptionDescription> describe_common_options() {
+  std::vector<core::OptionDescription> options = describe_meshes();
+  const std::vector<core::OptionDescription> actors = describe_actors();
+  options.insert(options.end(), actors.begin(), actors.end());
+  return options;
 }
 
 const SceneEntry& scene_of(const core::ConfigNode& node) {
@@ -23,7 +33,10 @@ const SceneEntry& scene_of(const core::ConfigNode& node) {
 }
 
 Scene make_scene(const core::ConfigNode& node, std::uint64_t seed) {
-  return scene_of(node).make(node, seed);
+  Scene scene = scene_of(node).make(node, seed);
+  add_meshes(scene, node.child("meshes"));
+  add_actors(node, scene);
+  return scene;
 }
 
 std::shared_ptr<const Ground> make_ground(const core::ConfigNode& node, std::uint64_t seed) {
@@ -31,7 +44,7 @@ std::shared_ptr<const Ground> make_ground(const core::ConfigNode& node, std::uin
 }
 
 std::string resolve_scene(const core::ConfigNode& node) {
-  return scene_of(node).resolve(node);
+  return scene_of(node).resolve(node) + resolve_meshes(node.child("meshes")) + resolve_actors(node);
 }
 
 }  // namespace tarmac::scenes

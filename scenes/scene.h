@@ -80,7 +80,9 @@ class ActorMotion {
 struct Actor {
   std::string name;
   std::shared_ptr<const ActorMotion> motion;
-  double radius_m = 0;  ///< of a sphere around the actor's origin that holds all its meshes
+  double radius_m = 0;      ///< of a sphere around the actor's origin that holds all its meshes
+  std::string where = {};   ///< "scenario.yaml:14" where a scenario asks for it; empty when the scene's kind does
+  std::int32_t group = -1;  ///< actors of one group belong together (a train) and may touch; -1 = belongs to none
 };
 
 /// Height over the macro surface [m], with its gradient: texture and joints of the pavement, applied after tracing.

@@ -16,8 +16,15 @@ std::string timing_text(const lidar::Profile& p) {
   if (p.by_encoder())
     return fmt::format("columns fired at fixed angles; modes (columns x Hz): {}, default {}", fmt::join(p.modes, ", "),
                        p.default_mode);
-  return fmt::format("a firing cycle every {} us; {} to {} Hz, default {} Hz", p.cycle_us, p.min_rate_hz, p.max_rate_hz,
-                     p.default_rate_hz);
+  if (p.by_prism())
+    return fmt::format(
+        "a pulse every {} us through wedges of {} and {} degrees (index {}) at {} and {} Hz; {} to {} frames a second, "
+        "default {}",
+        p.cycle_us, p.prism_wedge_deg[0], p.prism_wedge_deg[1], p.prism_refractive_index, p.prism_hz[0], p.prism_hz[1],
+        p.min_rate_hz, p.max_rate_hz, p.default_rate_hz);
+  return fmt::format("a firing cycle every {} us{}; {} to {} Hz, default {} Hz", p.cycle_us,
+                     p.states.empty() ? "" : fmt::format(", in {} states by turns", p.states.size()), p.min_rate_hz,
+                     p.max_rate_hz, p.default_rate_hz);
 }
 
 std::string noise_text(const lidar::Profile& p) {
@@ -31,13 +38,24 @@ bool has_origins(const lidar::Profile& p) {
   return !p.origin_forward_m.empty() || !p.origin_left_m.empty() || !p.origin_up_m.empty();
 }
 
+/// Firing times of a channel in each state.
+std::string firing_text(const lidar::Profile& p, std::size_t c) {
+  if (p.states.empty()) return fmt::format("{:9.3f}", p.firing_us[c]);
+  std::string text;
+  for (const lidar::AzimuthState& state : p.states)
+    text +=
+        state.firing_us[c] == lidar::AzimuthState::silent ? "         -" : fmt::format(" {:9.3f}", state.firing_us[c]);
+  return text.substr(1);
+}
+
 std::string channel_table_text(const lidar::Profile& p) {
   const auto origin = [](const std::vector<double>& values, std::size_t c) { return values.empty() ? 0 : values[c]; };
   std::string text = "  channel  ring  elevation_deg  azimuth_offset_cw_deg  firing_us";
+  for (std::size_t k = 1; k < p.states.size(); ++k) text += fmt::format("   state {} ", k);
   text += has_origins(p) ? "  origin forward, left, up [m]\n" : "\n";
   for (std::size_t c = 0; c < p.channels(); ++c) {
-    text += fmt::format("  {:7}  {:4}  {:13.4f}  {:21.4f}  {:9.3f}", c, static_cast<int>(p.ring[c]), p.elevation_deg[c],
-                        p.azimuth_offset_cw_deg[c], p.firing_us[c]);
+    text += fmt::format("  {:7}  {:4}  {:13.4f}  {:21.4f}  {}", c, static_cast<int>(p.ring[c]), p.elevation_deg[c],
+                        p.azimuth_offset_cw_deg[c], firing_text(p, c));
     if (has_origins(p))
       text += fmt::format("  {:8.4f} {:8.4f} {:8.4f}", origin(p.origin_forward_m, c), origin(p.origin_left_m, c),
                           origin(p.origin_up_m, c));
@@ -58,8 +76,11 @@ std::string describe_lidar(const std::string& name) {
   const lidar::Profile p = lidar::is_profile_path(name) ? lidar::load_profile(name) : lidar::profile(name);
   std::string text = fmt::format("{}: {}\n", p.name, p.summary);
   text += fmt::format("  timing      {}\n", timing_text(p));
-  text += fmt::format("  sweep       begins at azimuth {} deg (clockwise from sensor +x), turns clockwise\n",
-                      p.azimuth_start_deg);
+  if (p.by_prism())
+    text += "  sweep       a frame of fixed length; the pattern never repeats\n";
+  else
+    text += fmt::format("  sweep       begins at azimuth {} deg (clockwise from sensor +x), turns clockwise\n",
+                        p.azimuth_start_deg);
   text += fmt::format("  range       {} to {} m, step {} m; {} m on 10 %, {} m on 80 % reflectance\n", p.min_range_m,
                       p.max_range_m, p.range_step_m, p.range_10_percent_m, p.range_80_percent_m);
   text += fmt::format("  noise       {} (1 sigma); constant per channel {} m\n", noise_text(p), p.channel_bias_sigma_m);

@@ -22,9 +22,12 @@ void LidarOptions::visit(OptionVisitor& v) {
     "firings of each channel a revolution; 0 = the model's default (always 0 where a clock fires them)",
     {.at_least = 0});
   v("sweep_rate_hz", sweep_rate_hz, "revolutions a second; 0 = the model's default", {.at_least = 0});
+  v("start_offset_ms", start_offset_ms, "when its first sweep begins, from the recording's begin",
+    {.at_least = 0, .at_most = 1000});
   v("T_body_lidar", T_body_lidar, "pose of the sensor frame in the body frame (x forward, y left, z up)");
   v.group("noise", noise, "errors of the measurement");
   v.group("spin", spin, "how unevenly the head turns");
+  v.group("beam", beam, "what a beam is beyond a line with one echo");
   v("column_times", column_times,
     "fire the columns at recorded times: the path of a plain folder or of a CSV file sweep,column,t_ns");
   v.list("replay", replay, "the same, written out");
@@ -32,12 +35,18 @@ void LidarOptions::visit(OptionVisitor& v) {
 }
 
 void RigOptions::visit(OptionVisitor& v) {
-  v.group("lidar", lidar, "a spinning LiDAR");
+  if (listed)
+    v.list("lidars", lidars, "several LiDARs; estimators get one sweep for each of the first one's");
+  else
+    v.group("lidar", lidars[0], "a LiDAR; or `lidars:`, a list of such blocks");
   if (has_imu) v.group("imu", imu, "an IMU; without this block the rig carries none");
   v("gravity_m_s2", gravity_m_s2, "magnitude of gravity", {.above = 0});
+  v.group("body", body, "the vehicle that the sensors stand on, as far as they see it");
 }
 
 namespace {
+
+constexpr std::size_t most_lidars = 16;
 
 std::filesystem::path path_of(const ConfigNode& node, const std::string& text) {
   if (node.given_by_set()) return text;
@@ -95,21 +104,38 @@ void read_column_times(const ConfigNode& node, LidarOptions& lidar) {
   lidar.column_times.clear();
 }
 
+/// The blocks of the rig's LiDARs; one that is absent where the rig says nothing of any.
+std::vector<ConfigNode> lidar_nodes(const ConfigNode& rig) {
+  const ConfigNode list = rig.child("lidars");
+  if (!list.present()) return {rig.child("lidar")};
+  if (rig.child("lidar").present()) list.fail("stands beside lidar; give all LiDARs in one of them");
+  std::vector<ConfigNode> nodes = list.items();
+  if (nodes.empty()) list.fail("is empty; a rig has at least one LiDAR");
+  if (nodes.size() > most_lidars) list.fail(fmt::format("has {} LiDARs; at most {}", nodes.size(), most_lidars));
+  return nodes;
+}
+
 }  // namespace
 
 RigOptions read_rig(const ConfigNode& rig) {
   RigOptions options;
   options.has_imu = rig.child("imu").present();
-  const ConfigNode lidar = rig.child("lidar");
-  options.lidar.own_profile = lidar.child("profile").present();
+  options.listed = rig.child("lidars").present();
+  const std::vector<ConfigNode> nodes = lidar_nodes(rig);
+  options.lidars.resize(nodes.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k) options.lidars[k].own_profile = nodes[k].child("profile").present();
   rig.read(options);
-  read_sensor(lidar, options.lidar);
-  read_mode(lidar, options.lidar);
-  read_column_times(lidar, options.lidar);
-  try {
-    firing_table(options, 1);
-  } catch (const InputError& error) {
-    lidar.fail(error.what());
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    read_sensor(nodes[k], options.lidars[k]);
+    read_mode(nodes[k], options.lidars[k]);
+    read_column_times(nodes[k], options.lidars[k]);
+    lidar::check_beam(nodes[k].child("beam"), options.lidars[k].beam, options.lidars[k].profile);
+    lidar::check_body(rig.child("body"), options.body, options.lidars[k].T_body_lidar);
+    try {
+      firing_table(options, 1, k);
+    } catch (const InputError& error) {
+      nodes[k].fail(error.what());
+    }
   }
   if (options.has_imu && options.imu.rate_hz > imu_model(options.imu.model).max_rate_hz)
     rig.child("imu").fail_at("rate_hz", fmt::format("{} Hz is more than {} gives; at most {} Hz", options.imu.rate_hz,
@@ -117,8 +143,8 @@ RigOptions read_rig(const ConfigNode& rig) {
   return options;
 }
 
-lidar::FiringTable firing_table(const RigOptions& options, std::uint64_t seed) {
-  const LidarOptions& lidar = options.lidar;
+lidar::FiringTable firing_table(const RigOptions& options, std::uint64_t seed, std::size_t k) {
+  const LidarOptions& lidar = options.lidars.at(k);
   if (!lidar.column_times.empty() && !lidar.profile.by_encoder())
     throw InputError(
         fmt::format("column_times: {} fires by the clock: recorded times say nothing about where its head "
@@ -126,21 +152,23 @@ lidar::FiringTable firing_table(const RigOptions& options, std::uint64_t seed) {
                     lidar.model));
   return {lidar.profile,
           {lidar.columns, lidar.sweep_rate_hz},
-          lidar::SpinJitter(lidar.spin, seed, "lidar0/spin"),
-          lidar.replay};
+          lidar::SpinJitter(lidar.spin, seed, fmt::format("lidar{}/spin", k)),
+          lidar.replay,
+          duration_from_s(1e-3 * lidar.start_offset_ms)};
 }
 
 Rig data_sheet(const RigOptions& options) {
-  const lidar::Profile& profile = options.lidar.profile;
-  LidarSheet lidar;
-  lidar.model = options.lidar.model;
-  lidar.T_body_lidar = options.lidar.T_body_lidar;
-  lidar.sweep_rate_hz = options.lidar.sweep_rate_hz;
-  lidar.min_range_m = profile.min_range_m;
-  lidar.max_range_m = profile.max_range_m;
   Rig rig;
   rig.gravity_m_s2 = options.gravity_m_s2;
-  rig.lidars.push_back(lidar);
+  for (const LidarOptions& lidar : options.lidars) {
+    LidarSheet sheet;
+    sheet.model = lidar.model;
+    sheet.T_body_lidar = lidar.T_body_lidar;
+    sheet.sweep_rate_hz = lidar.sweep_rate_hz;
+    sheet.min_range_m = lidar.profile.min_range_m;
+    sheet.max_range_m = lidar.profile.max_range_m;
+    rig.lidars.push_back(sheet);
+  }
   if (options.has_imu) rig.imus.push_back(imu_sheet(options.imu));
   return rig;
 }

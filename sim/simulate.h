@@ -20,10 +20,11 @@ struct SimulationInput {
   core::Duration duration{0};
   std::shared_ptr<const scenes::Scene> scene;
   std::shared_ptr<const core::SmoothTrajectory> motion;
-  core::ConfigNode rig;               ///< the scenario's `rig:` block: {lidar: {...}, imu: {...}, gravity_m_s2}
-  std::string resolved_scenario;      ///< stored as truth/scenario.yaml
-  std::string resolved_motion;        ///< of sim::truth::resolve_motion; stored as truth/motion.yaml
-  core::ConfigNode faults;            ///< the scenario's `faults:` block; absent: nothing is wrong
+  core::ConfigNode rig;           ///< the scenario's `rig:` block: {lidar: {...}, imu: {...}, gravity_m_s2}
+  std::string resolved_scenario;  ///< stored as truth/scenario.yaml
+  std::string resolved_motion;    ///< of sim::truth::resolve_motion; stored as truth/motion.yaml
+  core::ConfigNode faults;        ///< the scenario's `faults:` block; absent: nothing is wrong
+  bool point_truth = false;       ///< store true range, normal and incidence of every point beside its label
 };
 
 struct SimulationSettings {
@@ -45,13 +46,16 @@ struct SimulationSummary {
   int threads = 1;              ///< that were used: as asked for, at most the processors there are
 };
 
-/// How much a drive is, before it is simulated.
+/// How much a drive is, before it is simulated. `bytes`: what recording and truth about take on the disk where most beams
+/// return something; open skies take less.
 struct Workload {
   std::size_t sweeps = 0, rays = 0;
+  double bytes = 0;
 };
-Workload workload_of(const core::ConfigNode& rig, core::Duration duration);
+Workload workload_of(const core::ConfigNode& rig, core::Duration duration, bool point_truth = false);
 
-/// Throws InputError when simulate() would refuse the input.
+/// Throws InputError when simulate() would refuse the input, and when something runs into something else
+/// (collisions.h).
 void check(const SimulationInput& input);
 
 /// Writes `recording_folder` (finished last) and `truth_folder`. Same input, same bytes, at any number of threads.

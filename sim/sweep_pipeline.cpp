@@ -34,9 +34,22 @@ truth::PointLabels labels_of(const lidar::SimulatedSweep& simulated, const scene
   labels.end = simulated.sweep.end;
   labels.instance = simulated.instance;
   labels.t_ns = simulated.sweep.t_ns;
+  labels.kind = simulated.kind;
+  labels.true_range_m = simulated.true_range_m;
+  labels.normal_x = simulated.normal_x;
+  labels.normal_y = simulated.normal_y;
+  labels.normal_z = simulated.normal_z;
+  labels.cos_incidence = simulated.cos_incidence;
   labels.label.reserve(simulated.instance.size());
   labels.moving.reserve(simulated.instance.size());
-  for (const std::uint32_t id : simulated.instance) {
+  for (std::size_t i = 0; i < simulated.instance.size(); ++i) {
+    const std::uint32_t id = simulated.instance[i];
+    if (id == truth::PointLabels::no_instance) {
+      const bool self = simulated.kind[i] == truth::ReturnKind::self;
+      labels.label.push_back(self ? scenes::Label::own_body : scenes::Label::none);
+      labels.moving.push_back(0);
+      continue;
+    }
     const scenes::Instance& instance = scene.instances[id];
     labels.label.push_back(instance.label);
     labels.moving.push_back(instance.actor >= 0 ? 1 : 0);

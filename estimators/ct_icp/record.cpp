@@ -16,7 +16,7 @@ core::ResidualRow row_of(const core::LidarSweep& sweep, const Keypoint& keypoint
   row.value = static_cast<float>(value);
   row.weight = static_cast<float>(weight);
   for (int k = 0; k < 6; ++k) row.jacobian[k] = static_cast<float>(J[k]);
-  row.sensor = sweep.sensor;
+  row.sensor = sweep.sensor_of(keypoint.point);
   row.point = keypoint.point;
   return row;
 }

@@ -50,7 +50,7 @@ class RowWriter {
     r.value = static_cast<float>(value);
     r.weight = static_cast<float>(weight);
     for (int k = 0; k < 6; ++k) r.jacobian[k] = static_cast<float>(J[k]);
-    r.sensor = sweep_.sensor;
+    r.sensor = sweep_.sensor_of(i);
     r.point = static_cast<std::uint32_t>(i);
     return r;
   }

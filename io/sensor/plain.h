@@ -13,7 +13,8 @@ namespace tarmac::io {
 /// is calibrated. An earlier export in that folder is replaced; lidar/stamps.txt is written last, so a folder without
 /// it was left half-way and is refused. Files are numbered by position: a hole in the sweeps' indices closes.
 /// Point times become float32 seconds and lose up to 4 ns in a sweep of 0.1 s.
-/// Throws core::InputError when the rig has several LiDARs or IMUs, which the format cannot hold.
+/// Several LiDARs are written as one, merged in the body's frame (core/merged_sweeps.h). Throws core::InputError when
+/// the rig has several IMUs, which the format cannot hold.
 void export_plain(const core::Recording& recording, const std::filesystem::path& folder,
                   const core::Progress& progress);
 /// Reads a plain folder into a recording folder. Returns the recording's hash. Throws core::InputError with file and

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/merged_sweeps.h"
 #include "io/sensor/calibration.h"
 #include "io/sensor/plain.h"
 #include "io/sensor/sweep_files.h"
@@ -46,11 +48,25 @@ std::string imu_csv(const std::vector<core::ImuSample>& samples) {
   return text;
 }
 
-void check_one_lidar(const core::Rig& rig, const char* format) {
-  if (rig.lidars.size() == 1 && rig.imus.size() <= 1) return;
+void check_sensors(const core::Rig& rig, const char* format) {
+  if (!rig.lidars.empty() && rig.imus.size() <= 1) return;
   throw core::InputError(fmt::format("{} holds one LiDAR and at most one IMU; the recording has {} and {}", format,
                                      rig.lidars.size(), rig.imus.size()));
 }
+
+/// What these formats take for the LiDAR's sweeps: of several LiDARs they are merged, in the body's frame.
+class OneLidar {
+ public:
+  explicit OneLidar(const core::Recording& recording) : recording_(recording) {
+    if (recording.rig().lidars.size() > 1) merged_.emplace(recording);
+  }
+  const core::Rig& rig() const { return merged_ ? merged_->rig() : recording_.rig(); }
+  LidarSweep sweep(std::size_t k) const { return merged_ ? merged_->sweep(k) : recording_.sweep(k); }
+
+ private:
+  const core::Recording& recording_;
+  std::optional<core::MergedSweeps> merged_;
+};
 
 void report(const core::Progress& progress, std::size_t done, std::size_t all) {
   if (progress) progress(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(all, 1)), "sweeps");
@@ -60,8 +76,9 @@ void report(const core::Progress& progress, std::size_t done, std::size_t all) {
 
 void export_plain(const core::Recording& recording, const std::filesystem::path& folder,
                   const core::Progress& progress) {
-  const core::Rig& rig = recording.rig();
-  check_one_lidar(rig, "the plain format");
+  check_sensors(recording.rig(), "the plain format");
+  const OneLidar lidar(recording);
+  const core::Rig& rig = lidar.rig();
   empty_plain_folder(folder);
   // Without calibration nothing is claimed: reading the folder back then gives an uncalibrated rig again.
   if (rig.calibrated) core::write_file(folder / "calibration.yaml", calibration_text(rig));
@@ -69,7 +86,7 @@ void export_plain(const core::Recording& recording, const std::filesystem::path&
 
   std::string stamps;
   for (std::size_t k = 0; k < recording.sweep_count(); ++k) {
-    const LidarSweep sweep = recording.sweep(k);
+    const LidarSweep sweep = lidar.sweep(k);
     core::write_file(folder / "lidar" / numbered(k, ".bin"), bytes_of(plain_records(sweep)));
     core::write_file(folder / "lidar" / numbered(k, ".ring"), bytes_of(sweep.ring));
     stamps += fmt::format("{} {}\n", core::to_ns(sweep.begin), core::to_ns(sweep.end));
@@ -80,7 +97,8 @@ void export_plain(const core::Recording& recording, const std::filesystem::path&
 
 void export_kitti(const core::Recording& recording, const std::filesystem::path& folder,
                   const core::Progress& progress) {
-  check_one_lidar(recording.rig(), "KITTI's layout");
+  check_sensors(recording.rig(), "KITTI's layout");
+  const OneLidar lidar(recording);
   const std::filesystem::path clouds = folder / "velodyne";
   make_folder(clouds);
   std::filesystem::remove(folder / "times.txt");
@@ -88,7 +106,7 @@ void export_kitti(const core::Recording& recording, const std::filesystem::path&
 
   std::string times;
   for (std::size_t k = 0; k < recording.sweep_count(); ++k) {
-    const LidarSweep sweep = recording.sweep(k);
+    const LidarSweep sweep = lidar.sweep(k);
     std::vector<float> records;
     records.reserve(4 * sweep.size());
     for (std::size_t i = 0; i < sweep.size(); ++i) {

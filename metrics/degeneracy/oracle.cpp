@@ -32,6 +32,7 @@ std::vector<std::size_t> choose(const LidarSweep& sweep, const PointLabels& labe
   for (std::size_t i = 0; i < sweep.size(); ++i) {
     const double range_m = sweep.point(i).norm();
     if (labels.moving[i] || !std::isfinite(range_m) || !(range_m > 0)) continue;
+    if (!sim::truth::on_a_surface(labels.kind_of(i))) continue;
     range_sum_m += range_m;
     all.push_back(i);
   }
@@ -44,19 +45,39 @@ std::vector<std::size_t> choose(const LidarSweep& sweep, const PointLabels& labe
   return chosen;
 }
 
+/// Where the sensors of a sweep truly are: of one LiDAR its pose on the body; of merged ones also what carries their
+/// points, in the nominal body frame, to where they saw them.
+struct Mountings {
+  std::vector<SE3> T_body_lidar, T_body_true;
+
+  Mountings(const SweepSource& sweeps, const Rig& truth) : T_body_true(sweeps.true_mountings(truth)) {
+    if (!sweeps.merged()) T_body_lidar = {truth.lidars[sweeps.lidar].T_body_lidar};
+    for (std::size_t k = 0; k < T_body_true.size(); ++k) T_body_lidar.push_back(truth.lidars.at(k).T_body_lidar);
+  }
+  bool merged() const { return !T_body_true.empty(); }
+  /// Where beams are thought to leave from: the LiDAR, or of several the body's origin.
+  Vector3d centre() const { return merged() ? Vector3d(0, 0, 0) : Vector3d(T_body_lidar[0].translation()); }
+};
+
 /// Beams from the LiDAR's origin to the measured points: where they end they coincide with the true beams, which leave
 /// a few centimetres beside it.
 Rays beams_to(const LidarSweep& sweep, const PointLabels& labels, std::span<const std::size_t> chosen,
-              const SmoothTrajectory& motion, const SE3& T_body_lidar, const Vector3d& base) {
+              const SmoothTrajectory& motion, const Mountings& mountings, const Vector3d& base) {
   Rays rays;
   rays.resize(chosen.size());
   TruthPoses poses(motion, chosen.size());
   SE3 T_world_lidar;
+  std::size_t last = 0;  // whose pose that is
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    const std::size_t i = chosen[k];
-    if (k == 0 || labels.t_ns[i] != rays.t_ns[k - 1]) T_world_lidar = poses.pose(labels.time(i)) * T_body_lidar;
+    const std::size_t i = chosen[k], sensor = mountings.merged() ? sweep.sensor_of(i) : 0;
+    const SE3& T_body_lidar = mountings.T_body_lidar.at(sensor);
+    if (k == 0 || labels.t_ns[i] != rays.t_ns[k - 1] || sensor != last)
+      T_world_lidar = poses.pose(labels.time(i)) * T_body_lidar;
+    last = sensor;
+    Vector3d p_lidar = sweep.point(i);
+    if (mountings.merged()) p_lidar = T_body_lidar.inverse() * (mountings.T_body_true[sensor] * p_lidar);
     const Vector3d o = T_world_lidar.translation() - base;
-    const Vector3d d = (T_world_lidar.linear() * sweep.point(i)).normalized();
+    const Vector3d d = (T_world_lidar.linear() * p_lidar).normalized();
     rays.ox[k] = o.x();
     rays.oy[k] = o.y();
     rays.oz[k] = o.z();
@@ -75,8 +96,9 @@ std::vector<std::uint32_t> tiles_of(std::size_t n) {
   return order;
 }
 
-OracleSweep oracle_sweep(const LidarSweep& sweep, const GroundTruth& truth, std::size_t lidar,
-                         const PointLabels& labels, const sim::raycast::Tracer& tracer, std::size_t most) {
+OracleSweep oracle_sweep(const LidarSweep& sweep, const GroundTruth& truth, const Mountings& mountings,
+                         double max_range_m, const PointLabels& labels, const sim::raycast::Tracer& tracer,
+                         std::size_t most) {
   OracleSweep result;
   result.index = sweep.index;
   result.begin = labels.begin;
@@ -89,14 +111,13 @@ OracleSweep oracle_sweep(const LidarSweep& sweep, const GroundTruth& truth, std:
   const std::vector<std::size_t> chosen = choose(sweep, labels, most, result);
   if (chosen.empty() || !truth.motion->covers(labels.begin) || !truth.motion->covers(labels.end)) return result;
 
-  const SE3& T_body_lidar = truth.rig.lidars[lidar].T_body_lidar;
   const Time middle = labels.begin + (labels.end - labels.begin) / 2;
   const SE3 T_world_body = truth.motion->pose(middle);
   result.p_world_body = T_world_body.translation();
-  result.T_world_c = T_world_body * Eigen::Translation3d(T_body_lidar.translation());
-  const double reach_m = 1.5 * truth.rig.lidars[lidar].max_range_m + 10;
+  result.T_world_c = T_world_body * Eigen::Translation3d(mountings.centre());
+  const double reach_m = 1.5 * max_range_m + 10;
   const SweepTracer traced = tracer.sweep(labels.begin, labels.end, result.T_world_c.translation(), reach_m);
-  const Rays rays = beams_to(sweep, labels, chosen, *truth.motion, T_body_lidar, traced.base());
+  const Rays rays = beams_to(sweep, labels, chosen, *truth.motion, mountings, traced.base());
   Hits hits;
   traced.trace(rays, tiles_of(chosen.size()), hits);
 
@@ -145,6 +166,10 @@ Oracle make_oracle(const SweepSource& sweeps, const GroundTruth& truth, const st
         fmt::format("the recording has {} sweeps and the truth labels of {}: they do not belong together; evaluate "
                     "each recording with the truth that was written beside it",
                     sweeps.count, labels.size()));
+  const Mountings mountings(sweeps, truth.rig);
+  double max_range_m = truth.rig.lidars.at(sweeps.lidar).max_range_m;
+  if (sweeps.merged())
+    for (const LidarSheet& lidar : truth.rig.lidars) max_range_m = std::max(max_range_m, lidar.max_range_m);
   Oracle oracle;
   oracle.sweeps.resize(sweeps.count);
   const int threads = std::max(1, settings.threads);
@@ -155,8 +180,8 @@ Oracle make_oracle(const SweepSource& sweeps, const GroundTruth& truth, const st
         tbb::blocked_range<std::size_t>(0, sweeps.count, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
           for (std::size_t i = range.begin(); i < range.end(); ++i)
-            oracle.sweeps[i] =
-                oracle_sweep(sweeps.sweep(i), truth, sweeps.lidar, labels[i], tracer, settings.points_per_sweep);
+            oracle.sweeps[i] = oracle_sweep(sweeps.sweep(i), truth, mountings, max_range_m, labels[i], tracer,
+                                            settings.points_per_sweep);
         },
         tbb::simple_partitioner());
   });

@@ -8,7 +8,7 @@ Oracle make_oracle(const core::Recording& recording, const sim::truth::GroundTru
                    const OracleSettings& settings) {
   const auto scene = std::make_shared<const scenes::Scene>(scenes::make_scene(truth.config.child("scene"), truth.seed));
   const sim::raycast::Tracer tracer(scene, {settings.threads, false});
-  return make_oracle(sweeps_of(recording), truth, truth.labels(), tracer, settings);
+  return make_oracle(sweeps_of(recording), truth, labels_of(recording, truth), tracer, settings);
 }
 
 }  // namespace tarmac::metrics

@@ -77,11 +77,44 @@ std::vector<Row> equipment_rows() {
   };
 }
 
+/// Along taxiways, runways and in tunnels.
+std::vector<Row> airfield_rows() {
+  using enum MaterialId;
+  return {
+      {sign_face_yellow, {"sign_face_yellow", 0.5, 0, 0.04, 0, 155, 0, false, {0.98f, 0.80f, 0.08f}}},
+      {sign_face_red, {"sign_face_red", 0.45, 0, 0.04, 0, 120, 0, false, {0.78f, 0.08f, 0.10f}}},
+      {sign_face_black, {"sign_face_black", 0.05, 0, 0.04, 0.2, 0, 0, false, {0.10f, 0.10f, 0.11f}}},
+      {marker_blue, {"marker_blue", 0.3, 0, 0.04, 0, 60, 0, false, {0.08f, 0.20f, 0.72f}}},
+      {light_lens, {"light_lens", 0.1, 0, 0.043, 0.05, 8, 0, false, {0.30f, 0.50f, 0.92f}}},
+      {tunnel_concrete, {"tunnel_concrete", 0.35, 0.2, 0.04, 0, 0, 0, false, {0.70f, 0.69f, 0.66f}}},
+  };
+}
+
+/// Indoors, in towns and in the open country.
+std::vector<Row> control_rows() {
+  using enum MaterialId;
+  return {
+      {floor_vinyl, {"floor_vinyl", 0.40, 0, 0.04, 0.2, 0, 0, false, {0.60f, 0.63f, 0.62f}}},
+      {wood, {"wood", 0.70, 0.2, 0.04, 0, 0, 0, false, {0.72f, 0.56f, 0.37f}}},
+      {cardboard, {"cardboard", 0.60, 0.1, 0.04, 0, 0, 0, false, {0.74f, 0.60f, 0.43f}}},
+      {steel_orange, {"steel_orange", 0.50, 0, 0.04, 0.15, 0, 0, false, {0.90f, 0.42f, 0.12f}}},
+      {brick, {"brick", 0.35, 0.3, 0.04, 0, 0, 0, false, {0.60f, 0.34f, 0.26f}}},
+      {plaster, {"plaster", 0.55, 0.2, 0.04, 0, 0, 0, false, {0.86f, 0.81f, 0.71f}}},
+      {car_paint_dark, {"car_paint_dark", 0.12, 0, 0.04, 0.07, 0, 0, false, {0.20f, 0.22f, 0.27f}}},
+      {soil, pavement({"soil", 0.30, 0.4, 0.04, 0, 0, 0, false, {0.46f, 0.38f, 0.28f}})},
+      {rock, {"rock", 0.30, 0.35, 0.04, 0, 0, 0, false, {0.55f, 0.53f, 0.50f}}},
+      {bark, {"bark", 0.35, 0.4, 0.04, 0, 0, 0, false, {0.36f, 0.29f, 0.23f}}},
+      {meadow, pavement({"meadow", 0.45, 0.5, 0.04, 0, 0, 0, false, {0.45f, 0.52f, 0.27f}})},
+      {foliage, {"foliage", 0.55, 0, 0.04, 0.2, 0, 0, false, {0.29f, 0.43f, 0.19f}}},
+  };
+}
+
 }  // namespace
 
 std::vector<Material> materials() {
   std::vector<Material> table(static_cast<std::size_t>(MaterialId::count));
-  for (const std::vector<Row>& rows : {ground_rows(), building_rows(), aircraft_rows(), equipment_rows()}) {
+  for (const std::vector<Row>& rows : {ground_rows(), building_rows(), aircraft_rows(), equipment_rows(),
+                                       airfield_rows(), control_rows()}) {
     for (const Row& row : rows) table[static_cast<std::size_t>(row.id)] = row.material;
   }
   for (const Material& material : table) {

@@ -25,6 +25,13 @@ void SpeedEvent::visit(core::OptionVisitor& v) {
   v("by_m", by_m, "distance along the path at which the change is complete (-1: not given)", {.at_least = -1});
   v("wait_s", wait_s, "without at_s, at_m, by_m: time between the end of the change before and this one's begin",
     {.at_least = 0});
+  v("onset_s", onset_s,
+    "time in which the acceleration comes up to its peak, stays there, and in which it goes again (0: it swells and "
+    "fades over the whole change)",
+    {.at_least = 0, .at_most = 5});
+  v("abs_m_s2", abs_m_s2, "ripple of the acceleration by anti-lock brakes, or by wheels that spin",
+    {.at_least = 0, .at_most = 3});
+  v("abs_hz", abs_hz, "frequency of that ripple", {.at_least = 2, .at_most = 12});
 }
 
 void JitterOptions::visit(core::OptionVisitor& v) {

@@ -30,6 +30,9 @@ struct SpeedEvent {
   double at_m = -1;
   double by_m = -1;
   double wait_s = 0;
+  double onset_s = 0;   ///< 0: the acceleration swells and fades over the whole change
+  double abs_m_s2 = 0;  ///< ripple of anti-lock brakes
+  double abs_hz = 6;
   void visit(core::OptionVisitor& v);
 };
 

@@ -80,6 +80,17 @@ Jet PlanarPath::heading(double s_m) const {
   return heading + heading_wander_.at(s_m);
 }
 
+Jet PlanarPath::curvature(double s_m) const {
+  const Segment& now = segment(s_m);
+  Jet curvature{now.curvature};
+  if (now.change != 0) {
+    const double l = now.blend_m;
+    const Jet h = smooth_step((s_m - now.s_m) / l);
+    curvature = curvature + now.change * Jet{h.f, h.d1 / l, h.d2 / (l * l), h.d3 / (l * l * l)};
+  }
+  return curvature + heading_wander_.derivative().at(s_m);
+}
+
 namespace {
 /// Displacement between two distances, by quadrature of the unit tangent.
 template <class Heading>

@@ -40,6 +40,8 @@ class PlanarPath {
   Point at(double s_m) const;
   /// Heading [rad] by distance.
   Jet heading(double s_m) const;
+  /// Curvature by distance: the heading's derivative, with one derivative more than heading() knows.
+  Jet curvature(double s_m) const;
 
  private:
   /// From s_m on the curvature is `curvature` plus `change` blended in over `blend_m`.

@@ -57,4 +57,33 @@ double smooth_step_integral(double u) {
   return u < 0.5 ? lower_half_integral(u) : u - 0.5 + lower_half_integral(1 - u);
 }
 
+namespace {
+
+/// Integrals of x h(x) up to the nodes k / intervals.
+struct Moments {
+  static constexpr int intervals = 512;
+  static constexpr double width = 1.0 / intervals;
+  static double integrand(double x) { return x * value(x); }
+  std::array<double, intervals + 1> at{};
+  Moments() {
+    for (int k = 0; k < intervals; ++k) at[k + 1] = at[k] + Gauss3::integrate(integrand, k * width, (k + 1) * width);
+  }
+};
+
+double moment(double u) {
+  static const Moments table;
+  if (u >= 1) return table.at.back();
+  const int k = static_cast<int>(u / Moments::width);
+  return table.at[k] + Gauss3::integrate(Moments::integrand, k * Moments::width, u);
+}
+
+}  // namespace
+
+double smooth_step_second_integral(double u) {
+  if (u <= 0) return 0;
+  // Integral of (u - x) h(x) up to u, and for u > 1 what follows of the integral x - 1/2.
+  if (u < 1) return u * smooth_step_integral(u) - moment(u);
+  return 0.5 - moment(1) + (u * u - u) / 2;
+}
+
 }  // namespace tarmac::scenes

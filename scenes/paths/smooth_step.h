@@ -16,6 +16,9 @@ Jet smooth_step(double u);
 /// Integral of h from 0 to u: u - 1/2 for u >= 1. Absolute error below 1e-15.
 double smooth_step_integral(double u);
 
+/// Integral of smooth_step_integral from 0 to u. Absolute error below 1e-15 for u up to 1, and relative beyond.
+double smooth_step_second_integral(double u);
+
 /// h' at its steepest.
 inline constexpr double smooth_step_peak_slope = 2.0;
 

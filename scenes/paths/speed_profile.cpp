@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "scenes/paths/smooth_step.h"
@@ -28,6 +30,17 @@ void SpeedProfile::add(const SpeedEvent& event, std::size_t index, std::vector<P
   }
   Ramp ramp{now_s + event.wait_s, 0, v_m_s, event.to_m_s - v_m_s, 0};
   ramp.duration_s = smooth_step_peak_slope * std::abs(ramp.change_m_s) / event.peak_m_s2;
+  ramp.onset_s = event.onset_s, ramp.abs_m_s2 = event.abs_m_s2, ramp.abs_hz = event.abs_hz;
+  if (event.onset_s > 0) {
+    const double at_peak_s = std::abs(ramp.change_m_s) / event.peak_m_s2;
+    if (event.onset_s > at_peak_s) {
+      return refuse(
+          fmt::format("onset_s: {} s is longer than the change takes at its peak ({:.3f} s): shorten it, or "
+                      "lower peak_m_s2",
+                      event.onset_s, at_peak_s));
+    }
+    ramp.duration_s = at_peak_s + event.onset_s;
+  }
   if (event.at_s >= 0) {
     ramp.t_s = event.at_s;
     if (ramp.t_s < now_s) {
@@ -49,20 +62,56 @@ void SpeedProfile::add(const SpeedEvent& event, std::size_t index, std::vector<P
   ramps_.push_back(ramp);
 }
 
-Jet SpeedProfile::at(double t_s) const {
+namespace {
+
+/// Speed that has been gained since the change began, as distance with derivatives by time.
+Jet gained(const SpeedProfile::Ramp& ramp, double since_s) {
+  const double dv = ramp.change_m_s;
+  if (ramp.onset_s == 0) {
+    const double T = ramp.duration_s, u = since_s / T;
+    const Jet h = smooth_step(u);
+    return {dv * T * smooth_step_integral(u), dv * h.f, dv / T * h.d1, dv / (T * T) * h.d2};
+  }
+  const double tau = ramp.onset_s, at_peak_s = ramp.duration_s - tau, a = dv / at_peak_s;
+  const double on = since_s / tau, off = (since_s - at_peak_s) / tau;
+  const Jet come = smooth_step(on), gone = smooth_step(off);
+  return {a * tau * tau * (smooth_step_second_integral(on) - smooth_step_second_integral(off)),
+          a * tau * (smooth_step_integral(on) - smooth_step_integral(off)), a * (come.f - gone.f),
+          a / tau * (come.d1 - gone.d1)};
+}
+
+Jet scaled(const Jet& by_u, double du) {
+  return {by_u.f, by_u.d1 * du, by_u.d2 * du * du, by_u.d3 * du * du * du};
+}
+
+/// Braking harder and less hard in turns: swells within a period, fades within the last one.
+Jet anti_lock(const SpeedProfile::Ramp& ramp, double since_s) {
+  const double w = 2 * std::numbers::pi * ramp.abs_hz, swell_s = std::min(1 / ramp.abs_hz, ramp.duration_s / 2);
+  const Jet on = scaled(smooth_step(since_s / swell_s), 1 / swell_s);
+  const Jet off = scaled(smooth_step((ramp.duration_s - since_s) / swell_s), -1 / swell_s);
+  const double amplitude_m = ramp.abs_m_s2 / (w * w);
+  return amplitude_m * (on * off * sin_cos(Jet{w * since_s, w, 0, 0}).sin);
+}
+
+}  // namespace
+
+Jet SpeedProfile::planned(double t_s) const {
   auto ramp = std::upper_bound(ramps_.begin(), ramps_.end(), t_s, [](double t, const Ramp& r) { return t < r.t_s; });
   if (ramp != ramps_.begin()) --ramp;
   const double since_s = t_s - ramp->t_s;
-  Jet planned{ramp->planned_m + ramp->v_m_s * since_s, ramp->v_m_s, 0, 0};
+  // Not through the blend: at rest the distance is then the same number at all times.
   if (since_s >= ramp->duration_s) {
-    // Not through the blend: at rest the distance is then the same number at all times.
-    planned = {ramp->end_m() + ramp->end_m_s() * (t_s - ramp->end_s()), ramp->end_m_s(), 0, 0};
-  } else if (ramp->change_m_s != 0) {
-    const double T = ramp->duration_s, dv = ramp->change_m_s, u = since_s / T;
-    const Jet h = smooth_step(u);
-    planned = planned + Jet{dv * T * smooth_step_integral(u), dv * h.f, dv / T * h.d1, dv / (T * T) * h.d2};
+    return {ramp->end_m() + ramp->end_m_s() * (t_s - ramp->end_s()), ramp->end_m_s(), 0, 0};
   }
-  return planned + chain(ripple_.at(planned.f), planned) - Jet{ripple_at_start_m_};
+  Jet planned{ramp->planned_m + ramp->v_m_s * since_s, ramp->v_m_s, 0, 0};
+  if (ramp->change_m_s != 0) planned = planned + gained(*ramp, since_s);
+  if (ramp->change_m_s != 0 && ramp->abs_m_s2 > 0) planned = planned + anti_lock(*ramp, since_s);
+  return planned;
+}
+
+Jet SpeedProfile::at(double t_s) const {
+  const Jet S = planned(t_s);
+  return S + chain(ripple_.at(S.f), S) - Jet{ripple_at_start_m_};
 }
 
 }  // namespace tarmac::scenes

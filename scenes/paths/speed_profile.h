@@ -11,7 +11,10 @@
 namespace tarmac::scenes {
 
 /// The planned distance S(t) is the integral of speeds that change by smooth_step; a ramp from v0 to v1 over T has the
-/// peak acceleration 2 |v1 - v0| / T and covers T (v0 + v1) / 2. The driven distance adds the driver's ripple,
+/// peak acceleration 2 |v1 - v0| / T and covers T (v0 + v1) / 2. With an onset time tau it is the acceleration that
+/// comes and goes by smooth_step within tau, and stays at its peak between: T = |v1 - v0| / peak + tau, the same
+/// distance. The ripple of anti-lock brakes is a sine's displacement that swells and fades with the change; it moves
+/// nothing for good. The driven distance adds the driver's ripple,
 ///   s(t) = S(t) + b(S(t)) - b(0),   hence   v = S' (1 + b'(S)),
 /// which is always on while the vehicle moves and is exactly nothing at rest.
 class SpeedProfile {
@@ -30,10 +33,13 @@ class SpeedProfile {
 
   struct Ramp {
     double t_s, planned_m, v_m_s, change_m_s, duration_s;
+    double onset_s = 0, abs_m_s2 = 0, abs_hz = 6;
     double end_s() const { return t_s + duration_s; }
     double end_m() const { return planned_m + duration_s * (v_m_s + change_m_s / 2); }
     double end_m_s() const { return v_m_s + change_m_s; }
   };
+  /// S(t) with derivatives by time.
+  Jet planned(double t_s) const;
   /// The changes of speed in order; the first has no change and stands for the beginning.
   const std::vector<Ramp>& ramps() const { return ramps_; }
 

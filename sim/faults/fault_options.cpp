@@ -73,7 +73,10 @@ void ImuFaultOptions::visit(OptionVisitor& v) {
 }
 
 void FaultOptions::visit(OptionVisitor& v, bool has_imu) {
-  v.group("lidar", lidar, "faults of the LiDAR");
+  if (listed)
+    v.list("lidars", lidars, "faults of each LiDAR, in the rig's order; {} = none");
+  else
+    v.group("lidar", lidar, "faults of the first LiDAR");
   if (has_imu) v.group("imu", imu, "faults of the IMU");
 }
 
@@ -91,21 +94,40 @@ void check_intervals(const ConfigNode& list) {
   }
 }
 
+void check_lidar(const ConfigNode& node, const LidarFaultOptions& options, double sweep_rate_hz) {
+  check_intervals(node.child("sweep_gaps"));
+  check_intervals(node.child("lost_sectors"));
+  const double most = std::numeric_limits<std::int32_t>::max() * 1e-9 * sweep_rate_hz / 2;
+  if (options.time_factor() > most)
+    node.fail_at("point_time_scale", fmt::format("{} stretches a sweep at {} Hz beyond the 2.1 s that a recording's "
+                                                 "point times can hold: at most {:.3g}",
+                                                 options.point_time_scale, sweep_rate_hz, most));
+}
+
 }  // namespace
 
-FaultOptions read_faults(const ConfigNode& faults, bool has_imu, double sweep_rate_hz) {
+LidarFaultOptions FaultOptions::of_lidar(std::size_t k) const {
+  if (listed) return k < lidars.size() ? lidars[k] : LidarFaultOptions();
+  return k == 0 ? lidar : LidarFaultOptions();
+}
+
+FaultOptions read_faults(const ConfigNode& faults, bool has_imu, const std::vector<double>& sweep_rate_hz) {
   FaultOptions options;
+  const ConfigNode listed = faults.child("lidars"), imu = faults.child("imu");
+  options.listed = listed.present();
+  if (options.listed && faults.child("lidar").present())
+    listed.fail("stands beside lidar; give the faults of all LiDARs in one of them");
   faults.read(options);
-  const ConfigNode lidar = faults.child("lidar"), imu = faults.child("imu");
   if (imu.present() && !has_imu) imu.fail("the rig has no IMU: add rig.imu or take these faults away");
-  check_intervals(lidar.child("sweep_gaps"));
-  check_intervals(lidar.child("lost_sectors"));
   check_intervals(imu.child("gaps"));
-  const double most = std::numeric_limits<std::int32_t>::max() * 1e-9 * sweep_rate_hz / 2;
-  if (options.lidar.time_factor() > most)
-    lidar.fail_at("point_time_scale", fmt::format("{} stretches a sweep at {} Hz beyond the 2.1 s that a recording's "
-                                                  "point times can hold: at most {:.3g}",
-                                                  options.lidar.point_time_scale, sweep_rate_hz, most));
+  if (!options.listed) check_lidar(faults.child("lidar"), options.lidar, sweep_rate_hz.at(0));
+  const std::vector<ConfigNode> items = options.listed ? listed.items() : std::vector<ConfigNode>();
+  for (std::size_t k = 0; k < items.size(); ++k) {
+    if (k >= sweep_rate_hz.size())
+      items[k].fail(fmt::format("the rig has {} LiDAR{}; take these faults away", sweep_rate_hz.size(),
+                                sweep_rate_hz.size() == 1 ? "" : "s"));
+    check_lidar(items[k], options.lidars[k], sweep_rate_hz[k]);
+  }
   return options;
 }
 

@@ -64,14 +64,18 @@ struct ImuFaultOptions {
 };
 
 struct FaultOptions {
-  LidarFaultOptions lidar;
+  LidarFaultOptions lidar;                ///< of the first LiDAR, where `lidars` is not given
+  bool listed = false;                    ///< `lidars:` was given
+  std::vector<LidarFaultOptions> lidars;  ///< of the rig's LiDARs in their order; those beyond its end have none
   ImuFaultOptions imu;
   /// The block of an IMU that the rig has not is left out.
   void visit(core::OptionVisitor& v, bool has_imu = true);
+  LidarFaultOptions of_lidar(std::size_t k) const;
 };
 
-/// Throws InputError (file, line, field) for a wrong option, an interval that ends before it begins, faults of an IMU
-/// that the rig has not, or point times that would not fit the recording's 32 bits at this sweep rate.
-FaultOptions read_faults(const core::ConfigNode& faults, bool has_imu, double sweep_rate_hz);
+/// `sweep_rate_hz`: of the rig's LiDARs. Throws InputError (file, line, field) for a wrong option, an interval that
+/// ends before it begins, faults of an IMU or a LiDAR that the rig has not, or point times that would not fit the
+/// recording's 32 bits at this sweep rate.
+FaultOptions read_faults(const core::ConfigNode& faults, bool has_imu, const std::vector<double>& sweep_rate_hz);
 
 }  // namespace tarmac::sim::faults

@@ -2,38 +2,43 @@
 
 #include <algorithm>
 
-#include "core/random.h"
-#include "sim/faults/clock.h"
-
 namespace tarmac::sim::faults {
 
 using namespace core;
 
+ImuFaults::ImuFaults(const ImuFaultOptions& options, std::uint64_t seed, const std::string& sensor)
+    : options_(options),
+      clock_(options.clock_offset_ms, options.clock_drift_ppm),
+      losses_(seed, sensor + "/faults/lost_samples"),
+      jitter_(seed, sensor + "/faults/jitter") {}
+
+std::optional<ImuSample> ImuFaults::next(ImuSample sample) {
+  const std::uint64_t k = count_++;
+  if (std::any_of(options_.gaps.begin(), options_.gaps.end(),
+                  [&](const Interval& gap) { return gap.holds(to_s(sample.t)); }))
+    return std::nullopt;
+  if (options_.lost_samples > 0 && losses_.uniform(k) < options_.lost_samples) {
+    ++lost_;
+    return std::nullopt;
+  }
+  sample.t = clock_(sample.t);
+  if (options_.jitter_ms > 0) {
+    sample.t += duration_from_s(1e-3 * options_.jitter_ms * jitter_.normal(k));
+    if (last_) sample.t = std::max(sample.t, *last_ + Duration(1));
+  }
+  last_ = sample.t;
+  return sample;
+}
+
 std::size_t apply_imu_faults(const ImuFaultOptions& options, std::uint64_t seed, const std::string& sensor,
                              std::vector<ImuSample>& samples) {
-  const FaultyClock clock(options.clock_offset_ms, options.clock_drift_ppm);
-  const RandomStream losses(seed, sensor + "/faults/lost_samples"), jitter(seed, sensor + "/faults/jitter");
+  ImuFaults faults(options, seed, sensor);
   std::vector<ImuSample> kept;
   kept.reserve(samples.size());
-  std::size_t lost = 0;
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    ImuSample sample = samples[k];
-    if (std::any_of(options.gaps.begin(), options.gaps.end(),
-                    [&](const Interval& gap) { return gap.holds(to_s(sample.t)); }))
-      continue;
-    if (options.lost_samples > 0 && losses.uniform(k) < options.lost_samples) {
-      ++lost;
-      continue;
-    }
-    sample.t = clock(sample.t);
-    if (options.jitter_ms > 0) {
-      sample.t += duration_from_s(1e-3 * options.jitter_ms * jitter.normal(k));
-      if (!kept.empty()) sample.t = std::max(sample.t, kept.back().t + Duration(1));
-    }
-    kept.push_back(sample);
-  }
+  for (const ImuSample& sample : samples)
+    if (const std::optional<ImuSample> recorded = faults.next(sample)) kept.push_back(*recorded);
   samples = std::move(kept);
-  return lost;
+  return faults.lost();
 }
 
 }  // namespace tarmac::sim::faults

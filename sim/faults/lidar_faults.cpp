@@ -19,10 +19,7 @@ void keep_only(LidarSweep& sweep, truth::PointLabels& labels, const std::vector<
   keep_only(sweep.t_ns, kept);
   keep_only(sweep.ring, kept);
   keep_only(sweep.intensity, kept);
-  keep_only(labels.label, kept);
-  keep_only(labels.instance, kept);
-  keep_only(labels.moving, kept);
-  keep_only(labels.t_ns, kept);
+  labels.keep_only(kept);
 }
 
 }  // namespace

@@ -101,6 +101,42 @@ class Filtered {
   Eigen::Matrix<double, 2, 6> state_;  // output and its rate, of each axis
 };
 
+/// Perfect samples, one after the other.
+class IdealImu {
+ public:
+  IdealImu(const SmoothTrajectory& motion, const ImuOptions& options, double gravity_m_s2, Time begin, Time end)
+      : motion_(motion),
+        options_(options),
+        gravity_m_s2_(gravity_m_s2),
+        begin_(begin),
+        end_(end),
+        point_(options.sampling == "point"),
+        k_(point_ ? 0 : 1) {
+    if (options.sampling == "low-pass") filtered_.emplace(motion, options_, gravity_m_s2, begin);
+  }
+  IdealImu(const IdealImu&) = delete;
+  IdealImu& operator=(const IdealImu&) = delete;
+
+  std::optional<ImuSample> next() {
+    const Time t = stamp(begin_, k_, options_.rate_hz), before = stamp(begin_, k_ - 1, options_.rate_hz);
+    if (t > end_) return std::nullopt;
+    ++k_;
+    const Reading r = point_      ? reading_at(motion_, options_.T_body_imu, gravity_m_s2_, t)
+                      : filtered_ ? filtered_->advance_to(t)
+                                  : mean_over(motion_, options_.T_body_imu, gravity_m_s2_, before, t);
+    return ImuSample{t, r.gyro_rad_s, r.accel_m_s2};
+  }
+
+ private:
+  const SmoothTrajectory& motion_;
+  ImuOptions options_;
+  double gravity_m_s2_;
+  Time begin_, end_;
+  bool point_;
+  std::int64_t k_;
+  std::optional<Filtered> filtered_;
+};
+
 void check(const ImuOptions& options) {
   const ImuModel& model = imu_model(options.model);
   if (options.rate_hz > 0 && options.rate_hz <= model.max_rate_hz) return;
@@ -127,30 +163,45 @@ void ImuOptions::visit(OptionVisitor& v) {
 
 std::vector<ImuSample> ideal_imu(const SmoothTrajectory& motion, const ImuOptions& options, double gravity_m_s2,
                                  Time begin, Time end) {
-  const bool point = options.sampling == "point";
-  std::optional<Filtered> filtered;
-  if (options.sampling == "low-pass") filtered.emplace(motion, options, gravity_m_s2, begin);
+  IdealImu ideal(motion, options, gravity_m_s2, begin, end);
   std::vector<ImuSample> samples;
-  for (std::int64_t k = point ? 0 : 1; stamp(begin, k, options.rate_hz) <= end; ++k) {
-    const Time t = stamp(begin, k, options.rate_hz), before = stamp(begin, k - 1, options.rate_hz);
-    const Reading r = point      ? reading_at(motion, options.T_body_imu, gravity_m_s2, t)
-                      : filtered ? filtered->advance_to(t)
-                                 : mean_over(motion, options.T_body_imu, gravity_m_s2, before, t);
-    samples.push_back({t, r.gyro_rad_s, r.accel_m_s2});
-  }
+  while (const std::optional<ImuSample> sample = ideal.next()) samples.push_back(*sample);
   return samples;
+}
+
+struct ImuSynthesis::State {
+  IdealImu ideal;
+  ImuErrorModel errors;
+};
+
+ImuSynthesis::ImuSynthesis(const SmoothTrajectory& motion, const ImuOptions& options, double gravity_m_s2, Time begin,
+                           Time end, std::uint64_t seed, const std::string& name) {
+  check(options);
+  const ImuTiming timing{options.rate_hz, options.sampling == "low-pass" ? options.low_pass_hz : 0};
+  const auto every_second = static_cast<std::size_t>(std::max(1.0, std::round(options.rate_hz)));
+  state_.reset(new State{{motion, options, gravity_m_s2, begin, end},
+                         {imu_model(options.model), options.noise ? options.errors : ImuErrorOptions::none(), timing,
+                          seed, name, every_second}});
+}
+
+ImuSynthesis::~ImuSynthesis() = default;
+
+std::optional<ImuSample> ImuSynthesis::next() {
+  std::optional<ImuSample> sample = state_->ideal.next();
+  if (sample) state_->errors.add_to(*sample);
+  return sample;
+}
+
+const RealisedImuErrors& ImuSynthesis::errors() const {
+  return state_->errors.realised();
 }
 
 SynthesizedImu synthesize_imu(const SmoothTrajectory& motion, const ImuOptions& options, double gravity_m_s2,
                               Time begin, Time end, std::uint64_t seed, const std::string& name) {
-  check(options);
+  ImuSynthesis synthesis(motion, options, gravity_m_s2, begin, end, seed, name);
   SynthesizedImu out;
-  out.samples = ideal_imu(motion, options, gravity_m_s2, begin, end);
-  const ImuTiming timing{options.rate_hz, options.sampling == "low-pass" ? options.low_pass_hz : 0};
-  const auto every_second = static_cast<std::size_t>(std::max(1.0, std::round(options.rate_hz)));
-  out.errors =
-      add_imu_errors(out.samples, imu_model(options.model), options.noise ? options.errors : ImuErrorOptions::none(),
-                     timing, seed, name, every_second);
+  while (const std::optional<ImuSample> sample = synthesis.next()) out.samples.push_back(*sample);
+  out.errors = synthesis.errors();
   return out;
 }
 

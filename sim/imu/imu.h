@@ -9,6 +9,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +41,22 @@ struct ImuOptions {
 /// not cover the span.
 std::vector<core::ImuSample> ideal_imu(const core::SmoothTrajectory& motion, const ImuOptions& options,
                                        double gravity_m_s2, core::Time begin, core::Time end);
+
+/// The samples of synthesize_imu one after the other, without keeping them.
+class ImuSynthesis {
+ public:
+  /// Keeps a reference to the motion. Throws as synthesize_imu.
+  ImuSynthesis(const core::SmoothTrajectory& motion, const ImuOptions& options, double gravity_m_s2, core::Time begin,
+               core::Time end, std::uint64_t seed, const std::string& name);
+  ~ImuSynthesis();
+  /// The next sample; nullopt when there is none left.
+  std::optional<core::ImuSample> next();
+  const RealisedImuErrors& errors() const;  ///< so far
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 struct SynthesizedImu {
   std::vector<core::ImuSample> samples;

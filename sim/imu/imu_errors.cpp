@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -138,43 +139,41 @@ Matrix3d draw_g_sensitivity(double sigma, std::uint64_t seed, const std::string&
   return matrix;
 }
 
-struct Effects {
-  const ImuErrorOptions& options;
-  const ImuTiming& timing;
-  std::uint64_t seed;
-  std::size_t bias_every;
-};
-
-/// Biases, noise and conversion of one axis; `value(k)` is the axis of sample k.
-template <class Value>
-void add_axis_errors(const TriadModel& model, const Effects& effects, const std::string& name, int axis,
-                     std::size_t count, const Value& value, RealisedTriad& realised) {
-  const ImuErrorOptions& options = effects.options;
-  const double interval_s = 1 / effects.timing.rate_hz;
-  std::optional<WhiteNoise> white;
-  std::optional<GaussMarkov> instability;
-  std::optional<RandomWalk> walk;
-  if (options.white_noise && model.noise_density > 0)
-    white.emplace(model.noise_density, effects.timing, effects.seed, name + "/white_noise");
-  if (options.bias_instability && model.bias_sigma > 0)
-    instability.emplace(model.bias_sigma, model.bias_tau_s, interval_s, effects.seed, name + "/bias_instability");
-  if (options.bias_walk && model.random_walk > 0)
-    walk.emplace(model.random_walk, interval_s, effects.seed, name + "/bias_walk");
-  const double turn_on =
-      options.turn_on_bias ? model.turn_on_sigma * RandomStream(effects.seed, name + "/turn_on_bias").normal(0) : 0;
-  realised.turn_on_bias[axis] = turn_on;
-  const Converter convert(model, options);
-  for (std::size_t k = 0; k < count; ++k) {
-    double bias = turn_on;
-    if (instability) bias += instability->next();
-    if (walk) bias += walk->next();
-    if (k % effects.bias_every == 0) realised.bias[k / effects.bias_every][axis] = bias;
-    double& v = value(k);
-    v += bias;
-    if (white) v += white->next();
-    v = convert(v, realised.saturated);
+/// Biases, noise and conversion of one axis, sample by sample.
+class AxisErrors {
+ public:
+  AxisErrors(const TriadModel& model, const ImuErrorOptions& options, const ImuTiming& timing, std::uint64_t seed,
+             const std::string& name)
+      : convert_(model, options) {
+    const double interval_s = 1 / timing.rate_hz;
+    if (options.white_noise && model.noise_density > 0)
+      white_.emplace(model.noise_density, timing, seed, name + "/white_noise");
+    if (options.bias_instability && model.bias_sigma > 0)
+      instability_.emplace(model.bias_sigma, model.bias_tau_s, interval_s, seed, name + "/bias_instability");
+    if (options.bias_walk && model.random_walk > 0)
+      walk_.emplace(model.random_walk, interval_s, seed, name + "/bias_walk");
+    if (options.turn_on_bias) turn_on_ = model.turn_on_sigma * RandomStream(seed, name + "/turn_on_bias").normal(0);
   }
-}
+
+  double turn_on() const { return turn_on_; }
+  /// Returns the bias that the sample had.
+  double add_to(double& value, std::size_t& saturated) {
+    double bias = turn_on_;
+    if (instability_) bias += instability_->next();
+    if (walk_) bias += walk_->next();
+    value += bias;
+    if (white_) value += white_->next();
+    value = convert_(value, saturated);
+    return bias;
+  }
+
+ private:
+  std::optional<WhiteNoise> white_;
+  std::optional<GaussMarkov> instability_;
+  std::optional<RandomWalk> walk_;
+  double turn_on_ = 0;
+  Converter convert_;
+};
 
 }  // namespace
 
@@ -194,33 +193,52 @@ ImuErrorOptions ImuErrorOptions::none() {
   return {false, false, false, false, false, false, false, false, false};
 }
 
+struct ImuErrorModel::State {
+  std::array<AxisErrors, 3> gyro, accel;
+};
+
+ImuErrorModel::ImuErrorModel(const ImuModel& model, const ImuErrorOptions& options, const ImuTiming& timing,
+                             std::uint64_t seed, const std::string& name, std::size_t bias_every) {
+  const auto axis = [&](const TriadModel& triad, const char* kind, int k) {
+    return AxisErrors(triad, options, timing, seed, fmt::format("{}/{}_{}", name, kind, "xyz"[k]));
+  };
+  state_ = std::make_unique<State>(
+      State{{axis(model.gyro, "gyro", 0), axis(model.gyro, "gyro", 1), axis(model.gyro, "gyro", 2)},
+            {axis(model.accel, "accel", 0), axis(model.accel, "accel", 1), axis(model.accel, "accel", 2)}});
+  realised_.bias_every = bias_every;
+  realised_.gyro.matrix = draw_matrix(model.gyro, options, seed, name + "/gyro");
+  realised_.accel.matrix = draw_matrix(model.accel, options, seed, name + "/accel");
+  if (options.g_sensitivity)
+    realised_.gyro.g_sensitivity = draw_g_sensitivity(model.g_sensitivity_sigma, seed, name + "/gyro");
+  for (int k = 0; k < 3; ++k) {
+    realised_.gyro.turn_on_bias[k] = state_->gyro[static_cast<std::size_t>(k)].turn_on();
+    realised_.accel.turn_on_bias[k] = state_->accel[static_cast<std::size_t>(k)].turn_on();
+  }
+}
+
+ImuErrorModel::~ImuErrorModel() = default;
+
+void ImuErrorModel::add_to(ImuSample& s) {
+  s.gyro_rad_s = realised_.gyro.matrix * s.gyro_rad_s + realised_.gyro.g_sensitivity * s.accel_m_s2;
+  s.accel_m_s2 = realised_.accel.matrix * s.accel_m_s2;
+  Vector3d gyro_bias, accel_bias;
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    gyro_bias[k] = state_->gyro[axis].add_to(s.gyro_rad_s[k], realised_.gyro.saturated);
+    accel_bias[k] = state_->accel[axis].add_to(s.accel_m_s2[k], realised_.accel.saturated);
+  }
+  if (count_++ % realised_.bias_every != 0) return;
+  realised_.bias_t.push_back(s.t);
+  realised_.gyro.bias.push_back(gyro_bias);
+  realised_.accel.bias.push_back(accel_bias);
+}
+
 RealisedImuErrors add_imu_errors(std::vector<ImuSample>& samples, const ImuModel& model, const ImuErrorOptions& options,
                                  const ImuTiming& timing, std::uint64_t seed, const std::string& name,
                                  std::size_t bias_every) {
-  RealisedImuErrors realised;
-  realised.bias_every = bias_every;
-  for (std::size_t k = 0; k < samples.size(); k += bias_every) realised.bias_t.push_back(samples[k].t);
-  realised.gyro.bias.resize(realised.bias_t.size());
-  realised.accel.bias.resize(realised.bias_t.size());
-  realised.gyro.matrix = draw_matrix(model.gyro, options, seed, name + "/gyro");
-  realised.accel.matrix = draw_matrix(model.accel, options, seed, name + "/accel");
-  if (options.g_sensitivity)
-    realised.gyro.g_sensitivity = draw_g_sensitivity(model.g_sensitivity_sigma, seed, name + "/gyro");
-  for (ImuSample& s : samples) {
-    s.gyro_rad_s = realised.gyro.matrix * s.gyro_rad_s + realised.gyro.g_sensitivity * s.accel_m_s2;
-    s.accel_m_s2 = realised.accel.matrix * s.accel_m_s2;
-  }
-  const Effects effects{options, timing, seed, bias_every};
-  for (int axis = 0; axis < 3; ++axis) {
-    const char letter = "xyz"[axis];
-    add_axis_errors(
-        model.gyro, effects, fmt::format("{}/gyro_{}", name, letter), axis, samples.size(),
-        [&](std::size_t k) -> double& { return samples[k].gyro_rad_s[axis]; }, realised.gyro);
-    add_axis_errors(
-        model.accel, effects, fmt::format("{}/accel_{}", name, letter), axis, samples.size(),
-        [&](std::size_t k) -> double& { return samples[k].accel_m_s2[axis]; }, realised.accel);
-  }
-  return realised;
+  ImuErrorModel errors(model, options, timing, seed, name, bias_every);
+  for (ImuSample& sample : samples) errors.add_to(sample);
+  return errors.realised();
 }
 
 namespace {

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,23 @@ struct RealisedImuErrors {
   std::size_t bias_every = 1;
   std::vector<core::Time> bias_t;
   RealisedTriad gyro, accel;
+};
+
+/// The errors of one device, put on sample after sample: memory does not grow with the run but for the biases.
+class ImuErrorModel {
+ public:
+  /// As add_imu_errors.
+  ImuErrorModel(const ImuModel& model, const ImuErrorOptions& options, const ImuTiming& timing, std::uint64_t seed,
+                const std::string& name, std::size_t bias_every = 1);
+  ~ImuErrorModel();
+  void add_to(core::ImuSample& sample);                            ///< the next one
+  const RealisedImuErrors& realised() const { return realised_; }  ///< so far
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+  RealisedImuErrors realised_;
+  std::size_t count_ = 0;
 };
 
 /// Draws are named `name`/..., one stream an effect and axis: another IMU's, or another effect's, never move them.

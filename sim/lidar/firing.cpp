@@ -18,8 +18,38 @@ constexpr double turn_rad = 2 * std::numbers::pi;
 // Channels whose azimuth offsets differ by less than this look the same way.
 constexpr double same_fan_rad = 1.0 * rad_per_deg;
 
+// Pulses of a scanner with prisms in a cycle: the vehicle's motion is first order inside it.
+constexpr std::size_t prism_pulses = 8;
+
 double value_or_0(const std::vector<double>& values, std::size_t i) {
   return values.empty() ? 0 : values[i];
+}
+
+std::size_t blocks_of(const Profile& p) {
+  return p.by_prism() ? prism_pulses : std::max<std::size_t>(1, p.states.size());
+}
+
+/// One firing in a cycle of all blocks.
+struct Shot {
+  std::size_t channel, block;
+  double offset_ns;
+};
+
+std::vector<Shot> shots_of(const Profile& p) {
+  std::vector<Shot> shots;
+  for (std::size_t block = 0; block < blocks_of(p); ++block)
+    for (std::size_t c = 0; c < p.channels(); ++c) {
+      const double firing_us = p.states.empty() ? p.firing_us[c] : p.states[block].firing_us[c];
+      if (firing_us == AzimuthState::silent) continue;
+      shots.push_back({c, block, std::round((static_cast<double>(block) * p.cycle_us + firing_us) * 1e3)});
+    }
+  std::stable_sort(shots.begin(), shots.end(), [](const Shot& a, const Shot& b) { return a.offset_ns < b.offset_ns; });
+  return shots;
+}
+
+bool fires_one_after_the_other(const Profile& p) {
+  const std::vector<Shot> shots = shots_of(p);
+  return std::any_of(shots.begin(), shots.end(), [](const Shot& s) { return s.offset_ns != 0; });
 }
 
 }  // namespace
@@ -27,14 +57,15 @@ double value_or_0(const std::vector<double>& values, std::size_t i) {
 FiringTable::FiringTable(const Profile& p, const Mode& mode)
     : mode_(mode),
       by_encoder_(p.by_encoder()),
-      cycle_ns_(by_encoder_ ? 1e9 / (mode.columns * mode.rate_hz) : p.cycle_us * 1e3),
+      blocks_(blocks_of(p)),
+      cycle_ns_(by_encoder_ ? 1e9 / (mode.columns * mode.rate_hz) : p.cycle_us * 1e3 * static_cast<double>(blocks_)),
       cycles_per_turn_(by_encoder_ ? mode.columns : 1e9 / (mode.rate_hz * cycle_ns_)),
       start_rad_(p.azimuth_start_deg * rad_per_deg),
       step_rad_(turn_rad / cycles_per_turn_),
       radius_m_(p.beam_origin_radius_m),
       height_m_(p.beam_origin_height_m),
       range_offset_m_(p.range_offset_m),
-      staggered_(std::any_of(p.firing_us.begin(), p.firing_us.end(), [](double t) { return t != 0; })),
+      staggered_(fires_one_after_the_other(p)),
       channel_origins_(!p.origin_forward_m.empty() || !p.origin_left_m.empty() || !p.origin_up_m.empty() ||
                        (staggered_ && radius_m_ != 0)),
       window_first_(0),
@@ -46,30 +77,37 @@ FiringTable::FiringTable(const Profile& p, const Mode& mode)
     window_wrapped_ = last < window_first_ ? last + 1 : 0;
     window_cycles_ = last < window_first_ ? last + 1 + mode.columns - window_first_ : last + 1 - window_first_;
   }
-  const double spin_rad_ns = turn_rad * mode.rate_hz * 1e-9;
-  for (std::size_t c = 0; c < p.channels(); ++c) {
-    const double offset_ns = std::round(p.firing_us[c] * 1e3);
-    const double elevation = p.elevation_deg[c] * rad_per_deg, spin = spin_rad_ns * offset_ns;
-    const double azimuth = p.azimuth_offset_cw_deg[c] * rad_per_deg + spin;
-    const double ahead = value_or_0(p.origin_forward_m, c), right = -value_or_0(p.origin_left_m, c);
-    // Where channels fire one after the other the head's circle turns on between them: it is part of each offset then.
-    const double radius = channel_origins_ ? radius_m_ : 0;
-    beams_.push_back({std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                      std::sin(elevation),
-                      ahead * std::cos(azimuth) - right * std::sin(azimuth) + radius * std::cos(spin),
-                      ahead * std::sin(azimuth) + right * std::cos(azimuth) + radius * std::sin(spin),
-                      value_or_0(p.origin_up_m, c)});
-    offset_ns_.push_back(static_cast<std::int32_t>(offset_ns));
-    elevation_rad_.push_back(elevation);
-    azimuth_rad_.push_back(azimuth);
-  }
+  if (p.by_prism()) prism_.emplace(p);
+  for (const Shot& shot : shots_of(p)) add_firing(p, shot.channel, shot.block, shot.offset_ns);
   if (channel_origins_) radius_m_ = 0;
 }
 
+void FiringTable::add_firing(const Profile& p, std::size_t c, std::size_t block, double offset_ns) {
+  const double spin = prism_ ? 0 : turn_rad * mode_.rate_hz * 1e-9 * offset_ns;
+  const double elevation = p.elevation_deg[c] * rad_per_deg;
+  const double azimuth = p.azimuth_offset_cw_deg[c] * rad_per_deg + spin;
+  const double ahead = value_or_0(p.origin_forward_m, c), right = -value_or_0(p.origin_left_m, c);
+  // Where channels fire one after the other the head's circle turns on between them: it is part of each offset then.
+  const double radius = channel_origins_ ? radius_m_ : 0;
+  beams_.push_back(
+      {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+       ahead * std::cos(azimuth) - right * std::sin(azimuth) + radius * std::cos(spin),
+       ahead * std::sin(azimuth) + right * std::cos(azimuth) + radius * std::sin(spin), value_or_0(p.origin_up_m, c)});
+  offset_ns_.push_back(static_cast<std::int32_t>(offset_ns));
+  elevation_rad_.push_back(elevation);
+  azimuth_rad_.push_back(azimuth);
+  channel_.push_back(static_cast<std::uint32_t>(c));
+  block_.push_back(static_cast<std::uint32_t>(block));
+  ring_.push_back(static_cast<std::uint16_t>(p.ring[c]));
+}
+
 FiringTable::FiringTable(const Profile& p, const Mode& mode, const SpinJitter& jitter,
-                         std::vector<ReplayedSweep> replay)
+                         std::vector<ReplayedSweep> replay, core::Duration start)
     : FiringTable(p, mode) {
   jitter_ = jitter;
+  start_ = start;
+  if (prism_ && (jitter.on() || jitter.encoder_errs()))
+    throw core::InputError(fmt::format("{} has no head that turns: leave spin out", p.name));
   const auto [first, last] = std::minmax_element(offset_ns_.begin(), offset_ns_.end());
   if (by_encoder_ && *last - *first >= cycle_ns_ * (1 - jitter.largest_rate_error()))
     throw core::InputError(
@@ -83,6 +121,7 @@ FiringTable::FiringTable(const Profile& p, const Mode& mode, const SpinJitter& j
         "timing: encoder",
         p.name));
   if (jitter.on()) throw core::InputError("give recorded column times or spin.rate_jitter, not both");
+  if (start.count() != 0) throw core::InputError("give recorded column times or start_offset_ms, not both");
   check_column_times(replay, static_cast<std::size_t>(window_cycles_));
   replay_ = std::make_shared<const std::vector<ReplayedSweep>>(std::move(replay));
 }
@@ -98,7 +137,7 @@ core::Time FiringTable::cycle_time(const SweepSpan& sweep, std::int64_t k) const
   }
   double t_ns = static_cast<double>(sweep.first_cycle + (by_encoder_ ? column_of(k) : k)) * cycle_ns_;
   if (by_encoder_ && jitter_ && jitter_->on()) t_ns += 1e9 * jitter_->lead_s(1e-9 * t_ns);
-  return core::time_from_ns(std::llround(t_ns));
+  return core::time_from_ns(std::llround(t_ns)) + start_;
 }
 
 // Of a clock-driven head that turns unevenly, at the beginning of a cycle; 0 at the recording's start.
@@ -138,6 +177,7 @@ SweepSpan FiringTable::sweep(std::int64_t index) const {
 }
 
 Cycle FiringTable::cycle(const SweepSpan& sweep, std::int64_t k) const {
+  if (prism_) return {cycle_time(sweep, k), 1, 0, 1, 0};
   double turns = 0;  // since the sweep's begin
   if (by_encoder_)
     turns = static_cast<double>(column_of(k)) / cycles_per_turn_;
@@ -162,7 +202,8 @@ Cycle FiringTable::cycle(const SweepSpan& sweep, std::int64_t k) const {
 
 std::int64_t FiringTable::sweeps_until(core::Time end) const {
   const double share = jitter_ && jitter_->on() ? 1.25 : 1;  // more turns than this no jitter can make
-  std::int64_t n = static_cast<std::int64_t>(core::to_s(end) * mode_.rate_hz * share) + 1;
+  const double span_s = std::max(0.0, core::to_s(end - start_));
+  std::int64_t n = static_cast<std::int64_t>(span_s * mode_.rate_hz * share) + 1;
   if (replay_) n = std::ssize(*replay_);
   while (n > 0 && sweep(n - 1).end > end) --n;
   return n;
@@ -188,6 +229,12 @@ std::vector<std::vector<std::size_t>> FiringTable::channel_groups() const {
 std::vector<std::uint32_t> FiringTable::tiles(std::size_t cycles) const {
   constexpr std::size_t tile = raycast::SweepTracer::tile;
   std::vector<std::uint32_t> order;
+  if (prism_) {
+    // A pulse follows the other by about a tenth of a degree: a tile is a piece of the rosette.
+    for (std::size_t i = 0; i < cycles * channels(); ++i) order.push_back(static_cast<std::uint32_t>(i));
+    while (order.size() % tile != 0) order.push_back(raycast::SweepTracer::no_ray);
+    return order;
+  }
   for (const std::vector<std::size_t>& group : channel_groups()) {
     const double rise = group.size() < 2 ? 0
                                          : (elevation_rad_[group.back()] - elevation_rad_[group.front()]) /

@@ -68,6 +68,7 @@ struct Optics {
   const char* source;
   double min_range_m, max_range_m, range_10_percent_m, range_80_percent_m;
   std::vector<double> sigma_from_m, sigma_m;
+  double divergence_mrad;  ///< full width at half maximum
 };
 
 struct Metadata {
@@ -208,7 +209,7 @@ void read_beams(const Metadata& metadata, Profile& p) {
 Optics optics_of(const Metadata& metadata, const Profile& p) {
   const double origin_mm = p.beam_origin_radius_m * 1000;
   if (metadata.is_line("OS-1")) {
-    if (origin_mm < 14) return {"OS1 generation 1", 0.8, 120, 40, 120, {0, 20, 40}, {0.015, 0.03, 0.1}};
+    if (origin_mm < 14) return {"OS1 generation 1", 0.8, 120, 40, 120, {0, 20, 40}, {0.015, 0.03, 0.1}, 2.27};
     const Profile& like = profile(origin_mm < 16.3 ? "ouster-os1-64-gen2" : "ouster-os1-128-rev7");
     return {origin_mm < 16.3 ? "OS1 revisions 5 and 6" : "OS1 revision 7",
             like.min_range_m,
@@ -216,10 +217,11 @@ Optics optics_of(const Metadata& metadata, const Profile& p) {
             like.range_10_percent_m,
             like.range_80_percent_m,
             like.sigma_from_m,
-            like.sigma_m};
+            like.sigma_m,
+            3.14};
   }
   if (metadata.is_line("OS-0"))
-    return {"OS0 revision 7", origin_mm > 27.4 ? 0.3 : 0.5, 100, 35, 75, {0, 10, 30}, {0.008, 0.02, 0.04}};
+    return {"OS0 revision 7", origin_mm > 27.4 ? 0.3 : 0.5, 100, 35, 75, {0, 10, 30}, {0.008, 0.02, 0.04}, 6.1};
   throw InputError(
       fmt::format("{}: range and noise of '{}' are not known here; write a profile that says them, with `channels: {}`",
                   metadata.root.file(), metadata.product.part.prod_line,
@@ -248,6 +250,7 @@ Profile ouster_profile(const std::filesystem::path& file) {
   p.sigma_from_m = optics.sigma_from_m;
   p.sigma_m = optics.sigma_m;
   p.channel_bias_sigma_m = 0.003;
+  p.divergence_mrad = {optics.divergence_mrad, optics.divergence_mrad};
   complete(metadata.beams.node, p);
   return p;
 }

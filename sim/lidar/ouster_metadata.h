@@ -24,7 +24,8 @@ namespace tarmac::sim::lidar {
 void read_ouster_beams(const std::filesystem::path& file, Profile& profile);
 
 /// The sensor as a whole; range and noise are those of its product line, told by prod_line and the beam origin. Throws
-/// InputError where they are not known (another prod_line or none): a profile with `channels: FILE.json` can then say them.
+/// InputError where they are not known (another prod_line or none): a profile with `channels: FILE.json` can then say
+/// them.
 Profile ouster_profile(const std::filesystem::path& file);
 
 }  // namespace tarmac::sim::lidar

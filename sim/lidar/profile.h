@@ -1,4 +1,4 @@
-/// What is known of a spinning LiDAR, as data: profiles/NAME.yaml, one file a sensor, or a file of the user's.
+/// What is known of a scanning LiDAR, as data: profiles/NAME.yaml, one file a sensor, or a file of the user's.
 #pragma once
 
 #include <span>
@@ -10,18 +10,29 @@
 
 namespace tarmac::sim::lidar {
 
+/// When the channels fire in one of the states that a clock-driven head goes through, cycle after cycle.
+struct AzimuthState {
+  static constexpr double silent = -1;  ///< in place of a time: the channel does not fire in this state
+  std::vector<double> firing_us;        ///< one value a channel
+  void visit(core::OptionVisitor& v);
+};
+
 /// Angles: azimuth is clockwise seen from above, 0 = sensor +x (forward); elevation is positive up.
-/// Sensor frame: x forward, y left, z up. Channels stand in firing order.
+/// Sensor frame: x forward, y left, z up. Channels stand in firing order (with `states`: in any).
 struct Profile {
   std::string name;
   std::string summary;
   std::string source;
-  /// "encoder": columns at fixed angles. "clock": a firing cycle every cycle_us.
+  /// "encoder": columns at fixed angles. "clock": a firing cycle every cycle_us. "prism": a pulse every cycle_us
+  /// through two turning wedges (prism.h); a sweep is a frame of fixed length, which repeats nothing.
   std::string timing;
   std::vector<std::string> modes;  ///< of encoder timing: COLUMNSxRATE
   std::string default_mode;
   double default_rate_hz = 10, min_rate_hz = 5, max_rate_hz = 20;  ///< of clock timing
   double cycle_us = 0;
+  std::vector<AzimuthState> states;  ///< of clock timing: cycle n is in state n mod their number; empty: firing_us
+  std::vector<double> prism_wedge_deg, prism_hz, prism_start_deg;  ///< of prism timing: first wedge, second wedge
+  double prism_refractive_index = 1.51;
   std::vector<double> column_window;  ///< of encoder timing: {first, last} column that is fired; empty: all
   double azimuth_start_deg = 180;
   double beam_origin_radius_m = 0, beam_origin_height_m = 0, range_offset_m = 0;
@@ -30,6 +41,9 @@ struct Profile {
   double threshold_snr = 0;
   std::vector<double> sigma_from_m, sigma_m;
   double channel_bias_sigma_m = 0;
+  std::vector<double>
+      divergence_mrad;  ///< full width of a beam at half its intensity, horizontal and vertical; or none
+  double pulse_length_ns = 5;
   std::vector<double> elevation_deg, azimuth_offset_cw_deg, firing_us, ring;  ///< one value a channel
   /// One value a channel, or none: where its beam starts, from the head's circle, along and left of the beam's own
   /// heading, and up.
@@ -38,6 +52,7 @@ struct Profile {
   void visit(core::OptionVisitor& v);
   std::size_t channels() const { return elevation_deg.size(); }
   bool by_encoder() const { return timing == "encoder"; }
+  bool by_prism() const { return timing == "prism"; }
   double sigma_at_m(double range_m) const;
 };
 
@@ -57,7 +72,8 @@ std::span<const EmbeddedProfile> embedded_profiles();
 
 /// Fills in what may be left out (firing_us: all at once; ring: counted from the lowest beam; default_mode where there
 /// is one mode only) and throws InputError (file, line, field) for a sensor that could not be: missing fields, tables
-/// of unequal length, channels out of firing order, cycles that overlap, rings that stand twice, modes that are none.
+/// of unequal length, channels out of firing order, cycles that overlap, rings that stand twice, modes that are none,
+/// states in which nothing fires, wedges that let no light out.
 /// @param node  the block that was read, for the errors
 void complete(const core::ConfigNode& node, Profile& profile);
 

@@ -31,6 +31,7 @@ class SpinJitter {
   SpinJitter(const SpinOptions& options, std::uint64_t seed, const std::string& stream_name);
 
   bool on() const { return on_; }
+  bool encoder_errs() const { return encoder_step_rad_ != 0; }
   /// Integral of e from 0 to t [s]: by how much time a head that turns by t + lead_s(t) is ahead of an even one.
   double lead_s(double t_s) const;
   double rate_error(double t_s) const;  ///< e(t)

@@ -1,4 +1,4 @@
-/// One spinning LiDAR on a moving body: firing times to rays to echoes to points.
+/// One scanning LiDAR on a moving body: firing times to rays to echoes to points.
 #pragma once
 
 #include <cstdint>
@@ -9,34 +9,46 @@
 #include "core/measurements.h"
 #include "core/trajectory.h"
 #include "scenes/scene.h"
+#include "sim/lidar/aim.h"
+#include "sim/lidar/beam_model.h"
+#include "sim/lidar/beam_options.h"
 #include "sim/lidar/effects/echoes.h"
 #include "sim/lidar/firing.h"
+#include "sim/lidar/own_body.h"
 #include "sim/lidar/profile.h"
+#include "sim/lidar/receiver.h"
 #include "sim/lidar/sweep_motion.h"
 #include "sim/raycast/tracer.h"
+#include "sim/truth/return_kind.h"
 
 namespace tarmac::sim::lidar {
-
-struct NoiseOptions {
-  double range_scale = 1;
-  double channel_bias_scale = 1;
-  bool quantisation = true;
-  bool dropout = true;
-  bool intensity = true;
-  void visit(core::OptionVisitor& v);
-};
 
 struct Mounting {
   std::uint16_t sensor = 0;                        ///< index into Rig::lidars; part of the names of random draws
   core::SE3 T_body_lidar = core::SE3::Identity();  ///< true
 };
 
+/// What is made beyond a plain sweep.
+struct Requests {
+  bool point_truth = false;  ///< true range, normal and incidence of every point
+  BeamOptions beam;
+  BodyOptions body;
+  std::size_t batch_rays =
+      1024;  ///< that are worked on at once: small enough for the second-level cache with all arrays
+};
+
 /// A sweep and, per point of it, what was hit.
 struct SimulatedSweep {
   core::LidarSweep sweep;
-  std::vector<std::uint32_t> instance;  ///< index into Scene::instances
-  std::size_t rays = 0;
-  double trace_cpu_s = 0;  ///< processor time inside the tracer
+  std::vector<std::uint32_t> instance;  ///< index into Scene::instances, or raycast::Hits::nothing
+  std::vector<truth::ReturnKind> kind;
+  /// As in truth::PointLabels; empty unless they were asked for.
+  std::vector<double> true_range_m;
+  std::vector<float> normal_x, normal_y, normal_z, cos_incidence;
+  std::size_t rays = 0;         ///< beams that were fired
+  std::size_t traced_rays = 0;  ///< rays of their footprints and beyond panes, where beams are more than lines
+  std::size_t split_beams = 0;  ///< beams whose outer rays were traced
+  double trace_cpu_s = 0;       ///< processor time inside the tracer
 };
 
 /// Arrays that a sweep is made in; keep one a thread and hand it from sweep to sweep.
@@ -44,8 +56,12 @@ struct Workspace {
   raycast::Rays rays;
   raycast::Hits hits;
   Echoes echoes;
-  std::vector<Cycle> cycles;
+  AimedCycles aimed;
   std::vector<float> x_m, y_m, z_m;  ///< points of all firings, in the sensor's frame
+  std::vector<double> true_range_m;  ///< of all firings, before noise
+  BeamWorkspace beams;
+  Receiver::Scratch receiver;
+  Returns firsts, seconds;
 };
 
 /// The rays of a whole sweep and the tiles they are traced in.
@@ -65,11 +81,13 @@ class SweepSimulator {
  public:
   SweepSimulator(const Profile& profile, const Mode& mode, const Mounting& mounting, const NoiseOptions& noise,
                  std::uint64_t seed, std::shared_ptr<const raycast::Tracer> tracer,
-                 std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion);
+                 std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion,
+                 const Requests& requests = {});
   /// The same with a head that turns unevenly or fires at recorded times.
   SweepSimulator(const Profile& profile, FiringTable firing, const Mounting& mounting, const NoiseOptions& noise,
                  std::uint64_t seed, std::shared_ptr<const raycast::Tracer> tracer,
-                 std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion);
+                 std::shared_ptr<const scenes::Scene> scene, std::shared_ptr<const core::SmoothTrajectory> motion,
+                 const Requests& requests = {});
 
   const FiringTable& firing() const { return firing_; }
   /// Throws OutOfSpan when the motion does not cover the sweep.
@@ -82,15 +100,22 @@ class SweepSimulator {
  private:
   raycast::SweepTracer tracer_for(const SweepSpan& span) const;
   SweepMotion motion_of(const SweepSpan& span) const;
-  void aim(const SweepSpan& span, const SweepMotion& motion, std::int64_t first, std::size_t cycles,
-           const Eigen::Vector3d& base, Workspace& w) const;
+  void sweep_lines(const SweepSpan& span, Workspace& w, SimulatedSweep& out) const;
+  void sweep_beams(const SweepSpan& span, Workspace& w, SimulatedSweep& out) const;
   void measure(const SweepSpan& span, std::int64_t first, Workspace& w) const;
+  void place(const std::vector<double>& range_m, Workspace& w) const;
   std::size_t report(Workspace& w, std::size_t points, SimulatedSweep& out) const;
+  bool reported(double range_m) const { return range_m >= profile_.min_range_m && range_m <= profile_.max_range_m; }
+  void report_truth(const Workspace& w, std::size_t points, SimulatedSweep& out) const;
+  std::size_t report_beams(Workspace& w, core::Time begin, std::size_t points, SimulatedSweep& out) const;
+  void report_return(const Returns& returns, std::size_t i, std::size_t at, SimulatedSweep& out) const;
+  Eigen::Vector3f point_of(const Workspace& w, std::size_t firing, double range_m) const;
 
   Profile profile_;
   FiringTable firing_;
   Mounting mounting_;
   NoiseOptions options_;
+  Requests requests_;
   std::shared_ptr<const raycast::Tracer> tracer_;
   std::shared_ptr<const scenes::Scene> scene_;
   std::shared_ptr<const core::SmoothTrajectory> motion_;
@@ -99,12 +124,16 @@ class SweepSimulator {
   RangeNoise range_noise_;
   ChannelBias channel_bias_;
   Intensity intensity_;
-  // Of each channel: the beam at azimuth 0 (unit vector, sensor frame), seconds into the cycle, ring.
-  std::vector<double> beam_x_, beam_y_, beam_z_, offset_s_;
-  std::vector<Eigen::Vector3d> origin_offset_;  // of the beam from the cycle's origin, at azimuth 0 [m]
+  Aim aim_;
+  std::vector<std::int32_t> offset_ns_;
   std::vector<std::uint16_t> ring_;
-  std::size_t batch_cycles_;
-  std::vector<std::uint32_t> batch_tiles_;
+  Batches batches_;
+  /// Where beams are more than lines.
+  struct Beyond {
+    BeamModel model;
+    Receiver receiver;
+  };
+  std::shared_ptr<const Beyond> beyond_;
 };
 
 }  // namespace tarmac::sim::lidar

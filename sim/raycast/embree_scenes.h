@@ -24,7 +24,7 @@ using EmbreeScene = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 
 /// Throws std::runtime_error with Embree's reason.
 Device new_device(const std::string& config);
-/// One mesh as a committed scene of its own, to be instanced.
+/// One mesh as a committed scene of its own, in the mesh's frame.
 EmbreeScene mesh_scene(RTCDevice device, const scenes::Mesh& mesh);
 /// An empty scene, to be filled and committed.
 EmbreeScene empty_scene(RTCDevice device);
@@ -32,9 +32,6 @@ EmbreeScene empty_scene(RTCDevice device);
 /// as geometry, with no instance. One hierarchy over all that stands still is faster to walk than instances whose boxes
 /// overlap on one pavement.
 void add_mesh(RTCDevice device, RTCScene scene, const scenes::Mesh& mesh, const core::SE3& T_base_mesh, unsigned id);
-/// Adds an instance under `id`, which hits report as instance. `poses` are T_base_mesh at equidistant times, the first
-/// at ray time 0 and the last at 1; one pose stands still.
-void add_instance(RTCDevice device, RTCScene top, RTCScene mesh, unsigned id, std::span<const core::SE3> poses);
 /// Builds the hierarchy. Waits without taking up other work of the thread pool: callers may hold locks.
 void commit(RTCScene scene);
 

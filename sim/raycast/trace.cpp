@@ -9,11 +9,10 @@
 namespace tarmac::sim::raycast {
 namespace {
 
-using core::Duration;
 using Eigen::Vector3d;
 
 constexpr std::size_t tile = SweepTracer::tile;
-// Embree's own distance is off by its rounding and by the motion steps, both divided by the cosine of incidence; a
+// Embree's own distance is off by its rounding, divided by the cosine of incidence; a
 // recomputed distance that is farther off than this belongs to a triangle seen edge-on, and Embree's is kept.
 constexpr double max_correction_m = 0.05;
 
@@ -89,7 +88,7 @@ void Rays::resize(std::size_t n) {
 
 void Hits::resize(std::size_t n) {
   t_m.resize(n);
-  for (std::vector<float>* v : {&nx, &ny, &nz, &cos_incidence}) v->resize(n);
+  for (std::vector<float>* v : {&nx, &ny, &nz, &cos_incidence, &relief_m}) v->resize(n);
   instance.resize(n);
   material.resize(n);
 }
@@ -106,36 +105,100 @@ void TraceScratch::resize(std::size_t rays) {
   relief.reserve(rays);
 }
 
+/// What a part's own scene says of a tile, taken over into the tile: instID tells the part.
+static void take_over(const RTCRayHit16& local, const int* valid, std::uint32_t part, RTCRayHit16& packet) {
+  for (std::size_t lane = 0; lane < tile; ++lane) {
+    if (valid[lane] == 0 || local.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
+    packet.ray.tfar[lane] = local.ray.tfar[lane];
+    packet.hit.geomID[lane] = 0;
+    packet.hit.primID[lane] = local.hit.primID[lane];
+    packet.hit.instID[0][lane] = part;
+  }
+}
+
+void SweepTracer::State::cast_shades(const Rays& rays, std::span<const std::uint32_t> order,
+                                     std::vector<Shade>& shades) const {
+  shades.clear();
+  if (parts.empty()) return;
+  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  std::int32_t t_first = std::numeric_limits<std::int32_t>::max(), t_last = 0;
+  for (const std::uint32_t i : order) {
+    if (i == no_ray) continue;
+    const Vector3d o(rays.ox[i], rays.oy[i], rays.oz[i]);
+    low = low.cwiseMin(o);
+    high = high.cwiseMax(o);
+    t_first = std::min(t_first, rays.t_ns[i]);
+    t_last = std::max(t_last, rays.t_ns[i]);
+  }
+  if (low.x() > high.x()) return;
+  const BatchBounds batch{base + 0.5 * (low + high), 0.5 * (high - low).norm() + 1e-4, static_cast<double>(t_first),
+                          static_cast<double>(t_last)};
+  raycast::cast_shades(parts, batch, static_cast<double>(reach_m), shades);
+}
+
+template <class Meet>
+void SweepTracer::State::meet_parts(const Rays& rays, std::span<const std::uint32_t> lanes,
+                                    const std::vector<Shade>& shades, RTCRayHit16& packet, const int* valid,
+                                    const Meet& meet) const {
+  const TileView view = view_of(packet.ray, valid, rays, lanes.data());
+  float farthest = 0;
+  for (std::size_t lane = 0; lane < tile; ++lane) farthest = std::max(farthest, packet.ray.tfar[lane]);
+  RTCRayHit16 local;
+  alignas(64) int inside[tile];
+  for (const Shade& shade : shades) {
+    if (shade.nearest_m > farthest || !shade.covers(view)) continue;
+    std::copy_n(valid, tile, inside);
+    const MovingPart& part = parts[shade.part];
+    if (!to_part(part, view, base, rays, lanes.data(), packet, local, inside)) continue;
+    meet(part, local, inside);
+    take_over(local, inside, shade.part, packet);
+  }
+}
+
 void SweepTracer::trace(const Rays& rays, std::span<const std::uint32_t> order, Hits& hits) const {
   State& s = *state_;
   hits.resize(rays.size());
   std::fill(hits.instance.begin(), hits.instance.end(), Hits::nothing);
+  std::fill(hits.relief_m.begin(), hits.relief_m.end(), 0.0f);
   s.scratch.resize(rays.size());
   RTCIntersectContext context = coherent_context();
   // A few tiles at a time: packed, traced, kept. One by one, Embree would wait for the packing's stores to land.
   constexpr std::size_t group = 8;
   PackedTile tiles[group];
   for (PackedTile& t : tiles) s.set_up(t.packet);
+  s.cast_shades(rays, order, s.scratch.shades);
   const std::size_t count = order.size() / tile;
   for (std::size_t first = 0; first < count; first += group) {
     const std::size_t here = std::min(group, count - first);
     for (std::size_t k = 0; k < here; ++k)
       s.load(rays, order.subspan((first + k) * tile, tile), tiles[k].packet, tiles[k].valid);
-    for (std::size_t k = 0; k < here; ++k) {
-      rtcIntersect16(tiles[k].valid, s.static_scene, &context, &tiles[k].packet);
-      // tfar now stands at the static hit: an actor replaces it only where it is nearer.
-      if (s.moving_scene) rtcIntersect16(tiles[k].valid, s.moving_scene.get(), &context, &tiles[k].packet);
-    }
+    for (std::size_t k = 0; k < here; ++k) rtcIntersect16(tiles[k].valid, s.static_scene, &context, &tiles[k].packet);
+    // tfar now stands at the static hit: an actor replaces it only where it is nearer.
+    if (!s.scratch.shades.empty())
+      for (std::size_t k = 0; k < here; ++k)
+        s.meet_parts(rays, order.subspan((first + k) * tile, tile), s.scratch.shades, tiles[k].packet, tiles[k].valid,
+                     [&](const MovingPart& part, RTCRayHit16& local, const int* valid) {
+                       rtcIntersect16(valid, part.mesh, &context, &local);
+                     });
     for (std::size_t k = 0; k < here; ++k) s.keep(order.subspan((first + k) * tile, tile), tiles[k].packet, hits);
   }
   s.finish_static(rays, hits);
   s.finish_moving(rays, hits);
 }
 
+/// A tile's rays in the frame of a part that they may meet.
+struct PackedPart {
+  PackedTile rays;
+  std::size_t index = 0;  ///< of its tile in PackedTiles::State::tiles
+  std::uint32_t part = 0;
+  RTCScene mesh = nullptr;
+};
+
 struct PackedTiles::State {
-  RTCScene static_scene = nullptr, moving_scene = nullptr;
+  RTCScene static_scene = nullptr;
   float reach_m = 0;
   std::vector<PackedTile> tiles;
+  std::vector<PackedPart> parts;  ///< in the order in which trace() meets them
   std::size_t rays = 0;
 };
 
@@ -149,19 +212,25 @@ std::size_t PackedTiles::rays() const {
 }
 
 void PackedTiles::reset() {
-  for (PackedTile& t : state_->tiles)
+  const auto forget = [&](PackedTile& t) {
     for (std::size_t lane = 0; lane < SweepTracer::tile; ++lane) {
       t.packet.ray.tfar[lane] = state_->reach_m;
       t.packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
       t.packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
     }
+  };
+  for (PackedTile& t : state_->tiles) forget(t);
+  for (PackedPart& p : state_->parts) forget(p.rays);
 }
 
 void PackedTiles::intersect() {
   RTCIntersectContext context = coherent_context();
-  for (PackedTile& t : state_->tiles) {
-    rtcIntersect16(t.valid, state_->static_scene, &context, &t.packet);
-    if (state_->moving_scene) rtcIntersect16(t.valid, state_->moving_scene, &context, &t.packet);
+  for (PackedTile& t : state_->tiles) rtcIntersect16(t.valid, state_->static_scene, &context, &t.packet);
+  for (PackedPart& p : state_->parts) {
+    PackedTile& t = state_->tiles[p.index];
+    std::copy_n(t.packet.ray.tfar, tile, p.rays.packet.ray.tfar);
+    rtcIntersect16(p.rays.valid, p.mesh, &context, &p.rays.packet);
+    take_over(p.rays.packet, p.rays.valid, p.part, t.packet);
   }
 }
 
@@ -177,7 +246,6 @@ PackedTiles SweepTracer::pack(const Rays& rays, std::span<const std::uint32_t> o
   PackedTiles packed;
   PackedTiles::State& p = *packed.state_;
   p.static_scene = state_->static_scene;
-  p.moving_scene = state_->moving_scene.get();
   p.reach_m = state_->reach_m;
   p.tiles.resize(order.size() / tile);
   for (std::size_t k = 0; k < p.tiles.size(); ++k) {
@@ -185,6 +253,24 @@ PackedTiles SweepTracer::pack(const Rays& rays, std::span<const std::uint32_t> o
     state_->load(rays, order.subspan(k * tile, tile), p.tiles[k].packet, p.tiles[k].valid);
     for (const int valid : p.tiles[k].valid) p.rays += valid != 0;
   }
+  std::vector<Shade> shades;
+  state_->cast_shades(rays, order, shades);
+  RTCIntersectContext context = coherent_context();
+  for (std::size_t k = 0; k < p.tiles.size() && !shades.empty(); ++k) {
+    PackedTile& t = p.tiles[k];
+    rtcIntersect16(t.valid, p.static_scene, &context, &t.packet);
+    const auto pack_part = [&](const MovingPart& part, RTCRayHit16& local, const int* valid) {
+      PackedPart& packed_part = p.parts.emplace_back();
+      packed_part.rays.packet = local;
+      std::copy_n(valid, tile, packed_part.rays.valid);
+      packed_part.index = k;
+      packed_part.part = static_cast<std::uint32_t>(&part - state_->parts.data());
+      packed_part.mesh = part.mesh;
+      rtcIntersect16(valid, part.mesh, &context, &local);
+    };
+    state_->meet_parts(rays, order.subspan(k * tile, tile), shades, t.packet, t.valid, pack_part);
+  }
+  packed.reset();
   return packed;
 }
 
@@ -256,30 +342,26 @@ void SweepTracer::State::finish_static(const Rays& rays, Hits& hits) {
   scratch.relief.solve(*tracer->scene->relief);
   for (std::size_t k = 0; k < scratch.relief_rays.size(); ++k) {
     const std::uint32_t i = scratch.relief_rays[k];
-    hits.t_m[i] += static_cast<double>(scratch.relief.s_m()[k]);
+    hits.relief_m[i] = scratch.relief.s_m()[k];
+    hits.t_m[i] += static_cast<double>(hits.relief_m[i]);
     hits.cos_incidence[i] = scratch.relief.cos_incidence()[k];
   }
 }
 
-const Frame& SweepTracer::State::T_world_mesh(std::uint32_t id, std::int32_t t_ns, PoseCache& poses) const {
-  const scenes::Instance& instance = tracer->scene->instances[id];
-  if (instance.actor < 0) return tracer->T_parent_mesh[id];
-  const std::uint64_t key = (static_cast<std::uint64_t>(id) << 32) | static_cast<std::uint32_t>(t_ns);
-  const auto [entry, is_new] = poses.try_emplace(key);
-  if (is_new) {
-    const scenes::Actor& actor = tracer->scene->actors[static_cast<std::size_t>(instance.actor)];
-    entry->second = frame_of(actor.motion->T_world_actor(begin + Duration(t_ns)) * instance.T_parent_mesh);
-  }
-  return entry->second;
-}
-
 void SweepTracer::State::finish_moving(const Rays& rays, Hits& hits) {
-  PoseCache poses;
   const scenes::Scene& scene = *tracer->scene;
+  Frame T{Eigen::Matrix3d::Identity(), Vector3d::Zero()};
+  std::uint32_t part_of_T = no_ray;
+  std::int32_t t_of_T_ns = 0;
   for (const TraceScratch::Moving& met : scratch.moving) {
     const std::uint32_t i = met.ray;
-    const scenes::Instance& instance = scene.instances[met.instance];
-    const Frame& T = T_world_mesh(met.instance, rays.t_ns[i], poses);
+    const MovingPart& part = parts[met.part];
+    const scenes::Instance& instance = scene.instances[part.instance];
+    if (met.part != part_of_T || rays.t_ns[i] != t_of_T_ns) {
+      T = part.track.at(rays.t_ns[i]);
+      part_of_T = met.part;
+      t_of_T_ns = rays.t_ns[i];
+    }
     const TrianglePlane& plane = tracer->meshes[instance.mesh].planes[met.triangle];
     const Vector3d o(rays.ox[i], rays.oy[i], rays.oz[i]), d(rays.dx[i], rays.dy[i], rays.dz[i]);
     Vector3d n = T.R * plane.normal;
@@ -295,6 +377,7 @@ void SweepTracer::State::finish_moving(const Rays& rays, Hits& hits) {
     const std::uint16_t material = scene.meshes[instance.mesh].materials[met.triangle];
     if (scene.relief && scene.materials[material].has_relief) {
       const ReliefHit relief = meet_relief(*scene.relief, base + o + t * d, d, n, t);
+      hits.relief_m[i] = static_cast<float>(relief.t_m - t);
       t = relief.t_m;
       cosine = relief.cos_incidence;
     }
@@ -303,7 +386,7 @@ void SweepTracer::State::finish_moving(const Rays& rays, Hits& hits) {
     hits.ny[i] = static_cast<float>(n.y());
     hits.nz[i] = static_cast<float>(n.z());
     hits.cos_incidence[i] = static_cast<float>(std::min(1.0, cosine));
-    hits.instance[i] = met.instance;
+    hits.instance[i] = part.instance;
     hits.material[i] = material;
   }
 }

@@ -19,7 +19,8 @@ using Eigen::Vector3d;
 // Origins are rounded to this grid to find the base. Single precision decides only which triangle is met, within 15
 // micrometres at half a cell; a stand or a pier lies in one cell and is built once.
 constexpr double base_grid_m = 512;
-constexpr int max_motion_steps = 129;  // Embree's limit
+constexpr int max_motion_steps = 129;
+constexpr int least_knots = 4;  // a cubic's
 
 Cell cell_of(const Eigen::Vector3d& p) {
   return {std::lround(p.x() / base_grid_m), std::lround(p.y() / base_grid_m), std::lround(p.z() / base_grid_m)};
@@ -75,6 +76,25 @@ bool Tracer::State::may_meet(const scenes::Actor& actor, Time begin, Time end, c
   return (0.5 * (p0 + p1) - origin).norm() < reach_m + radius;
 }
 
+/// Exact poses at equidistant times over the sweep; one where the actor stands still.
+std::vector<SE3> Tracer::State::knots(const scenes::Actor& actor, Time begin, Time end,
+                                      double acceleration_m_s2) const {
+  int count = std::max(least_knots, motion_steps(acceleration_m_s2, end - begin));
+  if (count > max_motion_steps)
+    throw core::InputError(
+        fmt::format("{}{}scene {}: actor {} needs {} motion steps in a sweep of {} s; at most {} are possible: let it "
+                    "move more smoothly or sweep faster",
+                    actor.where, actor.where.empty() ? "" : ": ", scene->name, actor.name, count,
+                    core::to_s(end - begin), max_motion_steps));
+  std::vector<SE3> poses{actor.motion->T_world_actor(begin)};
+  const SE3 last = actor.motion->T_world_actor(end);
+  if (acceleration_m_s2 == 0 && last.matrix() == poses.front().matrix()) return poses;
+  for (int k = 1; k + 1 < count; ++k)
+    poses.push_back(actor.motion->T_world_actor(begin + k * (end - begin) / (count - 1)));
+  poses.push_back(last);
+  return poses;
+}
+
 namespace {
 
 StaticTriangles static_triangles(const scenes::Scene& scene, const std::vector<MeshData>& meshes,
@@ -113,7 +133,8 @@ Tracer::Tracer(std::shared_ptr<const scenes::Scene> scene, const TracerSettings&
     if (instance.actor >= 0) moves[instance.mesh] = true;
   for (std::size_t k = 0; k < moves.size(); ++k) {
     const scenes::Mesh& mesh = state_->scene->meshes[k];
-    state_->meshes.push_back({moves[k] ? mesh_scene(state_->device.get(), mesh) : nullptr, planes_of(mesh)});
+    state_->meshes.push_back(
+        {moves[k] ? mesh_scene(state_->device.get(), mesh) : nullptr, bounds_of(mesh), planes_of(mesh)});
   }
   state_->still = static_triangles(*state_->scene, state_->meshes, state_->T_parent_mesh);
 }
@@ -139,28 +160,19 @@ SweepTracer Tracer::sweep(Time begin, Time end, const Eigen::Vector3d& origin_wo
   for (std::size_t a = 0; a < scene.actors.size(); ++a) {
     const scenes::Actor& actor = scene.actors[a];
     if (!state_->may_meet(actor, begin, end, origin_world, reach_m)) continue;
-    const int steps = motion_steps(actor.motion->acceleration_bound_m_s2(begin, end, actor.radius_m), end - begin);
-    if (steps > max_motion_steps)
-      throw core::InputError(
-          fmt::format("scene {}: actor {} needs {} motion steps in a sweep of {} s; at most {} are "
-                      "possible: let it move more smoothly or sweep faster",
-                      scene.name, actor.name, steps, core::to_s(end - begin), max_motion_steps));
-    std::vector<SE3> T_world_actor;
-    for (int k = 0; k < steps; ++k)
-      T_world_actor.push_back(actor.motion->T_world_actor(begin + k * (end - begin) / (steps - 1)));
-    if (!sweep.moving_scene) sweep.moving_scene = empty_scene(state_->device.get());
+    const double acceleration_m_s2 = actor.motion->acceleration_bound_m_s2(begin, end, actor.radius_m);
+    const std::vector<SE3> knots = state_->knots(actor, begin, end, acceleration_m_s2);
     ++sweep.actors;
-    std::vector<SE3> poses(T_world_actor.size());
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
       const scenes::Instance& instance = scene.instances[i];
       if (instance.actor != static_cast<std::int32_t>(a)) continue;
-      for (std::size_t k = 0; k < poses.size(); ++k)
-        poses[k] = relative_to(sweep.base, T_world_actor[k] * instance.T_parent_mesh);
-      add_instance(state_->device.get(), sweep.moving_scene.get(), state_->meshes[instance.mesh].scene.get(),
-                   static_cast<unsigned>(i), poses);
+      std::vector<SE3> T_world_mesh = knots;
+      for (SE3& T : T_world_mesh) T = T * instance.T_parent_mesh;
+      const MeshData& mesh = state_->meshes[instance.mesh];
+      sweep.parts.push_back({static_cast<std::uint32_t>(i), mesh.scene.get(), mesh.bounds,
+                             PoseTrack(T_world_mesh, sweep.span_ns), acceleration_m_s2});
     }
   }
-  if (sweep.moving_scene) commit(sweep.moving_scene.get());
   return result;
 }
 

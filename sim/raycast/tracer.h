@@ -36,6 +36,7 @@ struct Rays {
 struct Hits {
   static constexpr std::uint32_t nothing = std::numeric_limits<std::uint32_t>::max();
   std::vector<double> t_m;              ///< distance along the ray, relief included; infinity where nothing was met
+  std::vector<float> relief_m;          ///< how much of t_m is the relief's: the macro surface is at t_m - relief_m
   std::vector<float> nx, ny, nz;        ///< unit normal of the macro surface in the world, turned towards the sensor
   std::vector<float> cos_incidence;     ///< of the ray with the surface's normal, relief included; in (0, 1]
   std::vector<std::uint32_t> instance;  ///< index into Scene::instances; `nothing` where nothing was met

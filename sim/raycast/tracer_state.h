@@ -5,27 +5,19 @@
 #include <map>
 #include <mutex>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "sim/raycast/embree_scenes.h"
+#include "sim/raycast/movers.h"
 #include "sim/raycast/relief.h"
 #include "sim/raycast/scene_frames.h"
 #include "sim/raycast/tracer.h"
 
 namespace tarmac::sim::raycast {
 
-struct Frame {
-  Eigen::Matrix3d R;
-  Eigen::Vector3d p;
-};
-
-inline Frame frame_of(const core::SE3& T) {
-  return {T.linear(), T.translation()};
-}
-
 struct MeshData {
   EmbreeScene scene;  // of what actors carry; null for scenery
+  Bounds bounds;
   std::vector<TrianglePlane> planes;
 };
 
@@ -53,6 +45,8 @@ struct Tracer::State {
   RTCScene static_scene(const Cell& cell);
   bool may_meet(const scenes::Actor& actor, core::Time begin, core::Time end, const Eigen::Vector3d& origin,
                 double reach_m) const;
+  std::vector<core::SE3> knots(const scenes::Actor& actor, core::Time begin, core::Time end,
+                               double acceleration_m_s2) const;
 };
 
 /// One call's arrays, kept between calls.
@@ -63,12 +57,13 @@ struct TraceScratch {
   std::vector<float> nd;               ///< normal times direction, negative
   std::vector<std::uint32_t> surface;  ///< of StaticTriangles
   struct Moving {
-    std::uint32_t ray, instance, triangle;
+    std::uint32_t ray, part, triangle;
     float t_m;
   };
   std::vector<Moving> moving;
   std::vector<std::uint32_t> relief_rays;
   ReliefBatch relief;
+  std::vector<Shade> shades;
   void resize(std::size_t rays);
 };
 
@@ -79,17 +74,21 @@ struct SweepTracer::State {
   double span_ns = 1;
   float reach_m = 0;
   RTCScene static_scene = nullptr;
-  EmbreeScene moving_scene;  // null when no actor is in range
+  std::vector<MovingPart> parts;  ///< of actors in range
   std::size_t actors = 0;
   TraceScratch scratch;
 
-  using PoseCache = std::unordered_map<std::uint64_t, Frame>;  // by instance and time
   void set_up(RTCRayHit16& packet) const;
   void load(const Rays& rays, std::span<const std::uint32_t> lanes, RTCRayHit16& packet, int* valid) const;
+  void cast_shades(const Rays& rays, std::span<const std::uint32_t> order, std::vector<Shade>& shades) const;
+  /// Calls meet(part, local packet, valid lanes) for every part that a tile's rays may meet, after what stands still
+  /// has been met; it puts what it finds into the tile's packet.
+  template <class Meet>
+  void meet_parts(const Rays& rays, std::span<const std::uint32_t> lanes, const std::vector<Shade>& shades,
+                  RTCRayHit16& packet, const int* valid, const Meet& meet) const;
   void keep(std::span<const std::uint32_t> lanes, const RTCRayHit16& packet, Hits& hits);
   void finish_static(const Rays& rays, Hits& hits);
   void finish_moving(const Rays& rays, Hits& hits);
-  const Frame& T_world_mesh(std::uint32_t id, std::int32_t t_ns, PoseCache& poses) const;
 };
 
 }  // namespace tarmac::sim::raycast

@@ -1,5 +1,7 @@
 #include "sim/truth/drive_options.h"
 
+#include "sim/truth/vehicles.h"
+
 namespace tarmac::sim::truth {
 
 void RoadOptions::visit(core::OptionVisitor& v) {
@@ -25,6 +27,9 @@ void SuspensionOptions::visit(core::OptionVisitor& v) {
   v("roll_damping", roll_damping, "share of critical damping", damping);
   v("dive_deg_per_m_s2", dive_deg_per_m_s2, "steady pitch under braking", {.at_least = 0, .at_most = 2});
   v("lean_deg_per_m_s2", lean_deg_per_m_s2, "steady roll out of a turn", {.at_least = 0, .at_most = 2});
+  v("surge_hz", surge_hz, "natural frequency of the body's forward motion on its wheels (0: none)",
+    {.at_least = 0, .at_most = 25});
+  v("surge_damping", surge_damping, "share of critical damping", damping);
 }
 
 void VibrationOptions::visit(core::OptionVisitor& v) {
@@ -38,7 +43,7 @@ void VibrationOptions::visit(core::OptionVisitor& v) {
   v("rolling_rms_deg_s", rolling_rms_deg_s, "tyre vibration at 5 m/s, about each axis", {.at_least = 0, .at_most = 20});
 }
 
-void DriveOptions::visit(core::OptionVisitor& v) {
+void CourseOptions::visit(core::OptionVisitor& v) {
   v.group("start", start, "where the path begins");
   v("rest_s", rest_s, "time before the first change of speed", {.at_least = 0});
   v.list("path", path, "straights and turns, one after the other; after the last the path goes on straight");
@@ -47,9 +52,25 @@ void DriveOptions::visit(core::OptionVisitor& v) {
     {.at_least = 0, .at_most = 12});
   v.group("jitter", jitter, "ripple of the speed");
   v.group("wander", wander, "sideways wander");
+}
+
+void DriveOptions::visit(core::OptionVisitor& v) {
+  v.choice("vehicle", vehicle, vehicle_names(), "sets the defaults of suspension and vibration");
+  CourseOptions::visit(v);
   v.group("road", road, "unevenness under the wheels");
+  v.list("bumps", bumps, "single obstacles under the wheels");
   v.group("suspension", suspension, "how the body answers");
   v.group("vibration", vibration, "engine and tyres");
+}
+
+DriveOptions read_drive_options(const core::ConfigNode& node) {
+  DriveOptions options;
+  if (const core::ConfigNode vehicle = node.child("vehicle"); vehicle.present()) {
+    set_vehicle(vehicle.scalar("vehicle"), options.suspension, options.vibration);
+  }
+  node.read(options, {"kind"});
+  for (BumpOptions& bump : options.bumps) complete_bump(bump);
+  return options;
 }
 
 }  // namespace tarmac::sim::truth

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/config.h"
 #include "core/options.h"
+#include "sim/truth/bumps.h"
 #include "sim/truth/paths.h"
 
 namespace tarmac::sim::truth {
@@ -26,6 +28,7 @@ struct SuspensionOptions {
   double roll_hz = 1.6, roll_damping = 0.25;
   double dive_deg_per_m_s2 = 0.25;
   double lean_deg_per_m_s2 = 0.45;
+  double surge_hz = 0, surge_damping = 0.15;
   void visit(core::OptionVisitor& v);
 };
 
@@ -39,7 +42,8 @@ struct VibrationOptions {
   void visit(core::OptionVisitor& v);
 };
 
-struct DriveOptions {
+/// A path, and the speeds along it: what every motion over ground has.
+struct CourseOptions {
   StartOptions start;
   double rest_s = 3;
   std::vector<PathPiece> path;
@@ -47,11 +51,20 @@ struct DriveOptions {
   double stop_peak_m_s2 = 1.2;
   JitterOptions jitter;
   WanderOptions wander;
-  RoadOptions road;
-  SuspensionOptions suspension;
-  VibrationOptions vibration;
   void visit(core::OptionVisitor& v);
   SpeedPlan speed_plan() const { return {start.speed_m_s, rest_s, speed, stop_peak_m_s2}; }
 };
+
+struct DriveOptions : CourseOptions {
+  std::string vehicle = "van";
+  RoadOptions road;
+  std::vector<BumpOptions> bumps;
+  SuspensionOptions suspension;
+  VibrationOptions vibration;
+  void visit(core::OptionVisitor& v);
+};
+
+/// Options of a `motion:` block of kind drive: those of its vehicle, where the block does not say otherwise.
+DriveOptions read_drive_options(const core::ConfigNode& node);
 
 }  // namespace tarmac::sim::truth

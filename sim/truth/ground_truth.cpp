@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -66,8 +67,69 @@ ChunkData to_chunk(const PointLabels& labels) {
   chunk.add(std::span<const std::int32_t>(labels.t_ns));
   chunk.add_value(to_ns(labels.begin));
   chunk.add_value(to_ns(labels.end));
+  std::vector<std::uint8_t> kind(label.size());
+  for (std::size_t i = 0; i < kind.size(); ++i) kind[i] = static_cast<std::uint8_t>(labels.kind_of(i));
+  chunk.add(std::span<const std::uint8_t>(kind));
+  if (!labels.has_point_truth()) return chunk;
+  chunk.add(std::span<const double>(labels.true_range_m));
+  for (const auto* values : {&labels.normal_x, &labels.normal_y, &labels.normal_z, &labels.cos_incidence})
+    chunk.add(std::span<const float>(*values));
   return chunk;
 }
+
+void PointLabels::keep_only(const std::vector<std::size_t>& kept) {
+  const auto keep = [&](auto& values) {
+    if (values.empty()) return;  // a column that was not asked for
+    for (std::size_t k = 0; k < kept.size(); ++k) values[k] = values[kept[k]];
+    values.resize(kept.size());
+  };
+  keep(label);
+  keep(instance);
+  keep(moving);
+  keep(t_ns);
+  keep(kind);
+  keep(true_range_m);
+  for (auto* values : {&normal_x, &normal_y, &normal_z, &cos_incidence}) keep(*values);
+}
+
+const char* name_of(ReturnKind kind) {
+  static constexpr std::array names{"surface", "mixed",      "edge", "dirt",      "transmitted", "ghost",
+                                    "glint",   "retro_halo", "self", "saturated", "noise"};
+  return names.at(static_cast<std::size_t>(kind));
+}
+
+namespace {
+
+constexpr std::size_t kKindColumn = 6;  // those before it were there from the first version on
+
+void check_length(std::size_t length, const PointLabels& labels, const char* column) {
+  if (length != labels.label.size())
+    throw DamagedFile(fmt::format("a chunk of labels has {} values of {} for {} points: they must be equally many",
+                                  length, column, labels.label.size()));
+}
+
+void read_kinds(const ChunkData& chunk, PointLabels& labels) {
+  const auto kind = chunk.column<std::uint8_t>(kKindColumn);
+  check_length(kind.size(), labels, "kind");
+  labels.kind.reserve(kind.size());
+  for (const std::uint8_t value : kind) {
+    if (value > static_cast<std::uint8_t>(ReturnKind::noise))
+      throw DamagedFile(fmt::format("a chunk of labels has a point of kind {}, which is none", value));
+    labels.kind.push_back(static_cast<ReturnKind>(value));
+  }
+}
+
+void read_point_truth(const ChunkData& chunk, PointLabels& labels) {
+  std::size_t column = kKindColumn + 1;
+  labels.true_range_m = chunk.column<double>(column);
+  check_length(labels.true_range_m.size(), labels, "true range");
+  for (auto* values : {&labels.normal_x, &labels.normal_y, &labels.normal_z, &labels.cos_incidence}) {
+    *values = chunk.column<float>(++column);
+    check_length(values->size(), labels, "normal or incidence");
+  }
+}
+
+}  // namespace
 
 PointLabels labels_from_chunk(const ChunkData& chunk) {
   PointLabels labels;
@@ -85,6 +147,8 @@ PointLabels labels_from_chunk(const ChunkData& chunk) {
         fmt::format("a chunk of labels has columns of {}, {}, {} and {} points: they must be equally long", size,
                     labels.instance.size(), labels.moving.size(), labels.t_ns.size()));
   }
+  if (chunk.column_count() > kKindColumn) read_kinds(chunk, labels);
+  if (chunk.column_count() > kKindColumn + 1) read_point_truth(chunk, labels);
   return labels;
 }
 

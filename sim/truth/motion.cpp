@@ -10,7 +10,12 @@
 #include "sim/truth/constant_twist.h"
 #include "sim/truth/drive.h"
 #include "sim/truth/drive_options.h"
+#include "sim/truth/drone.h"
 #include "sim/truth/function_class.h"
+#include "sim/truth/handheld.h"
+#include "sim/truth/handheld_options.h"
+#include "sim/truth/recorded.h"
+#include "sim/truth/towed.h"
 
 namespace tarmac::sim::truth {
 
@@ -36,13 +41,18 @@ Motion make_straight(const ConfigNode& node, Duration duration, std::shared_ptr<
   return make_constant_twist({options.start, v_body, Eigen::Vector3d::Zero()}, duration);
 }
 
+Motion make_from_path(const ConfigNode& node, Duration duration, std::shared_ptr<const scenes::Ground>, std::uint64_t) {
+  return make_recorded(node, duration);
+}
+
 Motion make_still(const ConfigNode& node, Duration duration, std::shared_ptr<const scenes::Ground>, std::uint64_t) {
   return make_constant_twist({.start = read<StillOptions>(node).start}, duration);
 }
 
-template <class Options>
+/// The text of what `reader` makes of the block.
+template <auto reader>
 std::string resolve(const ConfigNode& node) {
-  return write_options(read<Options>(node), 2);
+  return write_options(reader(node), 2);
 }
 
 template <class Options>
@@ -60,16 +70,32 @@ struct Kind {
 
 /// A new kind of motion is one line here.
 constexpr std::array kinds{
-    Kind{"drive", make_drive, resolve<DriveOptions>, describe<DriveOptions>,
+    Kind{"drive", make_drive, resolve<read_drive_options>, describe<DriveOptions>,
          "speeds and curvatures change by (1 + tanh(1/(1-u) - 1/u over 2))/2, infinitely differentiable and not "
          "analytic; "
          "sines of the distance for ripple, wander, road and tyres, and of the time for the engine; position by "
          "quadrature; heave, pitch and roll solve an oscillator's equation (degree 7 every ms)"},
-    Kind{"constant-twist", make_twist, resolve<ConstantTwistOptions>, describe<ConstantTwistOptions>,
+    Kind{"towed", make_towed, resolve<read_towed_options>, describe<TowedOptions>,
+         "the tug as a drive; the links' headings solve the equation of axles that do not slip, over the distance "
+         "(degree "
+         "7 every 2 cm of it), and the place follows from them; heave, pitch and roll as a drive's"},
+    Kind{"handheld", make_handheld, resolve<read_handheld_options>, describe<HandheldOptions>,
+         "path and speed as a drive's; sines of the steps' phase, which is a sum of sines of the distance; strikes are "
+         "damped sines that swell and end by the infinitely differentiable step; tremor and posture are sines of the "
+         "time"},
+    Kind{"drone", make_drone, resolve<read_drone_options>, describe<DroneOptions>,
+         "path and speed as a drive's, heights by the infinitely differentiable step; gusts and what the drone gives "
+         "way "
+         "to them are sines of the time; the attitude is that of the thrust: a quotient of these; rotors are sines"},
+    Kind{"recorded", make_from_path, resolve<read_recorded_options>, describe<RecordedOptions>,
+         "polynomials of degree 7 through eight recorded poses each, blended around every recorded time by the "
+         "infinitely "
+         "differentiable step over windows whose ends lie on no regular grid; quaternions divided by their length"},
+    Kind{"constant-twist", make_twist, resolve<read<ConstantTwistOptions>>, describe<ConstantTwistOptions>,
          "T(0) Exp(t xi): the class of two-pose screw interpolation, hence a control and not a judge"},
-    Kind{"straight", make_straight, resolve<StraightOptions>, describe<StraightOptions>,
+    Kind{"straight", make_straight, resolve<read<StraightOptions>>, describe<StraightOptions>,
          "linear in time: the class of every interpolation, hence a control and not a judge"},
-    Kind{"still", make_still, resolve<StillOptions>, describe<StillOptions>,
+    Kind{"still", make_still, resolve<read<StillOptions>>, describe<StillOptions>,
          "constant: the class of every interpolation, hence a control and not a judge"},
 };
 

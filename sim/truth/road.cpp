@@ -62,8 +62,11 @@ inline void sin_cos_cycles(const Lanes& y, Lanes& s, Lanes& c) {
 
 }  // namespace
 
-Road::Road(const RoadOptions& options, double wheelbase_m, double track_m, std::uint64_t seed)
+Road::Road(const RoadOptions& options, double wheelbase_m, double track_m, std::uint64_t seed,
+           const std::vector<BumpOptions>& bumps)
     : wheelbase_m_(wheelbase_m),
+      track_m_(track_m),
+      bumps_(bumps, options.contact_m),
       joint_spacing_m_(options.joint_spacing_m),
       joint_depth_m_(options.joint_depth_m),
       joint_length_m_(options.joint_length_m) {
@@ -133,7 +136,16 @@ std::array<Jet, 3> Road::at(double s_m) const {
     sum[heave] = sum[heave] + 0.5 * (rear + front);
     sum[pitch] = sum[pitch] + (1 / wheelbase_m_) * (rear - front);
   }
+  if (!bumps_.empty()) add_bumps(s_m, sum);
   return sum;
+}
+
+void Road::add_bumps(double s_m, std::array<Jet, 3>& sum) const {
+  const Bumps::Heights rear = bumps_.at(s_m), front = bumps_.at(s_m + wheelbase_m_);
+  const Jet rear_mean = 0.5 * (rear.left_m + rear.right_m), front_mean = 0.5 * (front.left_m + front.right_m);
+  sum[heave] = sum[heave] + 0.5 * (rear_mean + front_mean);
+  sum[pitch] = sum[pitch] + (1 / wheelbase_m_) * (rear_mean - front_mean);
+  sum[roll] = sum[roll] + (1 / (2 * track_m_)) * (front.left_m - front.right_m + rear.left_m - rear.right_m);
 }
 
 }  // namespace tarmac::sim::truth

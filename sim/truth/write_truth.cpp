@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "core/config.h"
 #include "core/files.h"
@@ -44,13 +46,25 @@ void append_tum_line(std::string& text, Time t, const SE3& T) {
                  ns / 1'000'000'000, ns % 1'000'000'000, p.x(), p.y(), p.z(), q[0], q[1], q[2], q[3]);
 }
 
+void for_each_tum_part(const SmoothTrajectory& motion, const std::function<void(std::string_view)>& take) {
+  constexpr std::size_t part_bytes = 1 << 20;
+  std::string text = "# timestamp tx ty tz qx qy qz qw (T_world_body)\n";
+  for (Time t = motion.begin(); t < motion.end(); t += tum_period) {
+    append_tum_line(text, t, motion.pose(t));
+    if (text.size() < part_bytes) continue;
+    take(text);
+    text.clear();
+  }
+  append_tum_line(text, motion.end(), motion.pose(motion.end()));
+  take(text);
+}
+
 }  // namespace
 
 std::string motion_as_tum(const SmoothTrajectory& motion) {
-  std::string text = "# timestamp tx ty tz qx qy qz qw (T_world_body)\n";
-  for (Time t = motion.begin(); t < motion.end(); t += tum_period) append_tum_line(text, t, motion.pose(t));
-  append_tum_line(text, motion.end(), motion.pose(motion.end()));
-  return text;
+  std::string whole;
+  for_each_tum_part(motion, [&](std::string_view part) { whole += part; });
+  return whole;
 }
 
 void write_truth(const std::filesystem::path& folder, const std::string& resolved_scenario,
@@ -58,7 +72,8 @@ void write_truth(const std::filesystem::path& folder, const std::string& resolve
                  const std::vector<Fault>& faults) {
   std::filesystem::create_directories(folder);
   write_file(folder / "motion.yaml", motion_as_yaml(resolved_motion));
-  write_file(folder / "truth.tum", motion_as_tum(motion));
+  // Part by part: of half an hour this is a quarter of a gigabyte.
+  write_file_in_parts(folder / "truth.tum", [&](const WritePart& write) { for_each_tum_part(motion, write); });
   write_file(folder / "rig.json", rig_to_json(rig) + "\n");
   write_file(folder / "faults.json", faults_as_json(faults));
   // Last: load_ground_truth starts from it.

@@ -245,7 +245,7 @@ TEST(Plain, IsRecognised) {
 TEST(Plain, RefusesMoreSensorsThanItHolds) {
   const TemporaryFolder folder;
   Rig rig = calibrated_rig();
-  rig.lidars.push_back(rig.lidars[0]);
+  rig.imus.push_back(rig.imus.at(0));
   record(folder / "rec", rig, {sweep_of(0, 5)}, {});
   EXPECT_THAT(
       tests::message_of<core::InputError>([&] { export_plain(Recording::open(folder / "rec"), folder / "plain", {}); }),

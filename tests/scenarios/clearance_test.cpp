@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "io/world/mesh_readers.h"
 #include "scenarios/scenario.h"
 #include "scenes/registry.h"
 #include "sim/truth/motion.h"
@@ -78,6 +79,7 @@ std::vector<std::filesystem::path> shipped() {
 class ShippedScenario : public testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(ShippedScenario, DrivesClearOfEverythingThatStandsThere) {
+  io::world::install_mesh_readers();
   const scenarios::Scenario scenario = scenarios::load_scenario(GetParam(), {});
   const scenes::Scene scene = scenes::make_scene(scenario.scene, 1);
   const auto motion = sim::truth::make_motion(scenario.motion, scenario.duration(), scene.ground, 1);

@@ -4,7 +4,6 @@
 
 #include "scenes/stand/layout.h"
 #include "scenes/stand/options.h"
-#include "scenes/stand/parts.h"
 #include "tests/scenes/support.h"
 
 namespace tarmac::scenes {
@@ -141,40 +140,6 @@ TEST(StandEquipment, NothingFloatsOrSinks) {
     ++tested;
   }
   EXPECT_GT(tested, 30);
-}
-
-const Instance& the_bridge(const Scene& scene) {
-  return *std::find_if(scene.instances.begin(), scene.instances.end(),
-                       [](const Instance& i) { return i.label == Label::jet_bridge; });
-}
-
-TEST(JetBridge, CabMeetsTheFirstLeftDoorWithoutTouchingTheSkin) {
-  const AircraftType& type = airbus_a320();
-  const Scene& scene = tests::default_stand();
-  const core::SE3 T_world_aircraft = park(type, *scene.ground, 0, layout::nose_y_m);
-  const Vector3d sill = door_sill_world(type, T_world_aircraft);
-  double nearest = 1e9, deepest = 1e9;
-  const Instance& bridge = the_bridge(scene);
-  tests::for_each_static_triangle(
-      scene, [&](const Instance& i) { return &i == &bridge; },
-      [&](const Instance&, const tests::Triangle& t) {
-        for (int a = 0; a <= 20; ++a) {
-          for (int b = 0; a + b <= 20; ++b) {
-            const Vector3d p = t[0] + (t[1] - t[0]) * (a / 20.0) + (t[2] - t[0]) * (b / 20.0);
-            if ((p - sill).norm() > 6) continue;
-            nearest = std::min(nearest, (p - sill).norm());
-            const Vector3d q = T_world_aircraft.inverse() * p;
-            const double skin = fuselage_half_width_m(type, -q.x(), q.z());
-            if (skin > 0) deepest = std::min(deepest, q.y() - skin);
-          }
-        }
-      });
-  EXPECT_LT(nearest, 0.4);
-  EXPECT_GT(deepest, 0) << "part of the bridge is inside the fuselage";
-}
-
-TEST(JetBridge, LeavesTheRoadItsClearHeight) {
-  EXPECT_GE(bridge_clearance_m(*tests::default_stand().ground), layout::corridor_clear_height_m);
 }
 
 }  // namespace

@@ -75,9 +75,9 @@ BenchRows bench_sim(const Console& console) {
     const std::string variant = fast ? "fast" : "default";
     const auto tracer =
         std::make_shared<const sim::raycast::Tracer>(input.scene, sim::raycast::TracerSettings{1, fast});
-    const sim::lidar::SweepSimulator simulator(rig.lidar.profile, sim::firing_table(rig, seed),
-                                               {.sensor = 0, .T_body_lidar = rig.lidar.T_body_lidar}, rig.lidar.noise,
-                                               seed, tracer, input.scene, input.motion);
+    const sim::lidar::SweepSimulator simulator(rig.lidars[0].profile, sim::firing_table(rig, seed),
+                                               {.sensor = 0, .T_body_lidar = rig.lidars[0].T_body_lidar},
+                                               rig.lidars[0].noise, seed, tracer, input.scene, input.motion);
     const std::int64_t count =
         simulator.firing().sweeps_until(std::min(core::Time(input.duration), input.motion->end()));
     const core::Progress progress = console.progress("sim, " + variant);
@@ -88,6 +88,7 @@ BenchRows bench_sim(const Console& console) {
     }
     add_rows(variant, totals, rows);
   }
+  for (BenchRow& row : bench_beams(console)) rows.push_back(std::move(row));
   return rows;
 }
 

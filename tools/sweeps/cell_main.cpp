@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "io/world/mesh_readers.h"
 #include "core/files.h"
 #include "scenarios/scenario.h"
 #include "tools/tarmac/evaluation_run.h"
@@ -103,5 +104,6 @@ int run(int argc, char** argv) {
 }  // namespace tarmac::tools
 
 int main(int argc, char** argv) {
+  tarmac::io::world::install_mesh_readers();
   return tarmac::tools::run(argc, argv);
 }

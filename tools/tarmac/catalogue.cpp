@@ -11,19 +11,20 @@
 #include "core/files.h"
 #include "estimators/registry.h"
 #include "metrics/registry.h"
-#include "reports/report.h"
 #include "scenarios/sweep_file.h"
+#include "scenes/actors/actors.h"
+#include "scenes/aircraft/aircraft.h"
+#include "scenes/equipment/equipment.h"
 #include "scenes/registry.h"
 #include "sim/simulate.h"
 #include "sim/truth/motion.h"
 #include "tools/tarmac/commands.h"
 #include "tools/tarmac/layout.h"
+#include "tools/tarmac/pictures.h"
 #include "tools/tarmac/world.h"
 
 namespace tarmac::tools {
 namespace {
-
-constexpr int kPictureWidth_px = 1600, kPictureHeight_px = 900;
 
 struct Entry {
   std::string name, summary;
@@ -136,12 +137,69 @@ std::vector<Entry> scene_entries() {
 std::string describe_scene(const std::string& name) {
   for (const auto* scene : scenes::scenes()) {
     if (name != scene->name) continue;
-    const auto built = scene->make(core::ConfigNode(), 1);
+    const auto built = scenes::make_scene(core::ConfigNode::parse("kind: " + name + "\n", "describe scene " + name), 1);
     return fmt::format("{}: {}\n{} triangles after instancing, {} materials, {} actors\n{}", scene->name,
                        scene->summary, built.triangle_count(), built.materials.size(), built.actors.size(),
-                       options_text(scene->describe()));
+                       options_text(scene->describe()) + "of every kind, " +
+                           options_text(scenes::describe_common_options()));
   }
   unknown("scene", name, scene_entries());
+}
+
+std::vector<Entry> actor_entries() {
+  std::vector<Entry> entries;
+  for (const scenes::ActorKindSummary& kind : scenes::actor_summaries()) entries.push_back({kind.name, kind.summary});
+  return entries;
+}
+
+std::string describe_actor(const std::string& name) {
+  for (const Entry& entry : actor_entries())
+    if (entry.name == name)
+      return fmt::format("{}: {}\none entry of a scene's `actors:` list\n{}", name, entry.summary,
+                         options_text(scenes::describe_actor(name)));
+  unknown("actor", name, actor_entries());
+}
+
+std::vector<Entry> aircraft_entries() {
+  std::vector<Entry> entries;
+  for (const std::string& name : scenes::aircraft_names())
+    entries.push_back({name, scenes::aircraft_type(name).summary});
+  return entries;
+}
+
+std::string describe_aircraft(const std::string& name) {
+  const scenes::AircraftType& t = scenes::aircraft_type(name);
+  std::string text = fmt::format(
+      "{}: {}\nICAO code {}; length {} m, span {} m, height {} to {} m, cabin floor {} m above ground, {} engines\n",
+      t.name, t.summary, t.icao_code, t.length_m, t.span_m, t.height_min_m, t.height_max_m, t.floor_z_m,
+      2 * t.engines.size());
+  text += fmt::format("nose gear {} m aft of the nose tip\n", t.nose_gear.x_m);
+  for (const auto& gear : t.main_gear) {
+    text +=
+        fmt::format("main gear {} m aft, track {} m, {} wheels a leg\n", gear.x_m, 2 * gear.half_track_m, gear.wheels);
+  }
+  for (std::size_t k = 0; k < t.doors.size(); ++k) {
+    const auto& door = t.doors[k];
+    text += fmt::format("door {}: {} m aft, {} x {} m, sill {:.2f} m above ground, {}\n", k, door.x_m, door.width_m,
+                        door.height_m, t.floor_z_m + door.sill_m,
+                        door.side == 0  ? "both sides"
+                        : door.side > 0 ? "left"
+                                        : "right");
+  }
+  return text;
+}
+
+std::vector<Entry> equipment_entries() {
+  std::vector<Entry> entries;
+  for (const auto& entry : scenes::equipment()) entries.push_back({entry.name, entry.summary});
+  return entries;
+}
+
+std::string describe_equipment(const std::string& name) {
+  const auto& entry = scenes::equipment_entry(name);
+  return fmt::format("{}: {}\n{} x {} x {} m, label {}, {} triangles\n", entry.name, entry.summary, entry.length_m,
+                     entry.width_m, entry.height_m, scenes::name_of(entry.label),
+                     scenes::make_equipment(name).triangles.size());
 }
 
 std::vector<Entry> motion_entries() {
@@ -208,6 +266,9 @@ const std::vector<Kind>& kinds() {
       {"sweeps", "sweep", sweep_entries, describe_sweep},
       {"gates", "gate", gate_entries, describe_gate},
       {"scenes", "scene", scene_entries, describe_scene},
+      {"actors", "actor", actor_entries, describe_actor},
+      {"aircraft", "aircraft", aircraft_entries, describe_aircraft},
+      {"equipment", "equipment", equipment_entries, describe_equipment},
       {"motions", "motion", motion_entries,
        [](const std::string& name) { return options_text(sim::truth::describe_motion(name)); }},
       {"sensors", "sensor", [] { return catalogue_entries(sim::lidar_catalogue()); }, sim::describe_lidar},
@@ -216,23 +277,6 @@ const std::vector<Kind>& kinds() {
       {"estimators", "estimator", estimator_entries, describe_estimator},
       {"metrics", "metric", metric_entries, describe_metric}};
   return all;
-}
-
-void draw_picture(const DescribeArguments& arguments) {
-  scenes::Scene scene;
-  core::Time when{};
-  if (arguments.kind == "scene") {
-    for (const auto* entry : scenes::scenes()) {
-      if (arguments.name == entry->name) scene = entry->make(core::ConfigNode(), 1);
-    }
-  } else if (arguments.kind == "scenario") {
-    const auto scenario = scenarios::load_scenario(scenarios::find_scenario(arguments.name, scenario_folders()), {});
-    scene = scenes::make_scene(scenario.scene, static_cast<std::uint64_t>(scenario.seed));
-    when = core::time_from_s(scenario.duration_s / 2);
-  } else {
-    throw core::InputError(fmt::format("describe {} -o: only a scene or a scenario has a picture", arguments.kind));
-  }
-  reports::render_scene(arguments.picture, scene, when, kPictureWidth_px, kPictureHeight_px);
 }
 
 }  // namespace
@@ -266,7 +310,11 @@ int list_command(const std::string& wanted, const CommonArguments& common) {
 int describe_command(const DescribeArguments& arguments, const CommonArguments&) {
   for (const Kind& kind : kinds()) {
     if (arguments.kind != kind.singular && arguments.kind != kind.plural) continue;
-    fmt::print("{}", kind.describe(arguments.name));
+    if (arguments.name == "all") {
+      for (const Entry& entry : kind.list()) fmt::print("{}", kind.describe(entry.name));
+    } else {
+      fmt::print("{}", kind.describe(arguments.name));
+    }
     if (!arguments.picture.empty()) draw_picture({kind.singular, arguments.name, arguments.picture});
     return 0;
   }

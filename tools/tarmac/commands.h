@@ -28,6 +28,7 @@ struct ScenarioArguments {
   std::string diagnostics = "full";
   std::string estimator_program;  ///< another build's tarmac-estimate; empty = this one's
   bool fast = false;
+  bool point_truth = false;  ///< simulate only
 };
 int run_command(const ScenarioArguments& arguments, const CommonArguments& common);
 int simulate_command(const ScenarioArguments& arguments, const CommonArguments& common);
@@ -84,9 +85,13 @@ struct DescribeArguments {
 int describe_command(const DescribeArguments& arguments, const CommonArguments& common);
 
 struct TransferArguments {
-  std::string format;  ///< plain | kitti | tum
+  std::string format;  ///< plain | kitti | tum; export: or exr
   std::string from, to;
   std::string estimator;  ///< export tum: which; "" = truth
+  // Of export exr:
+  std::int64_t sweep = -1;  ///< index; -1 = all
+  int lidar = 0;
+  bool no_truth = false;
 };
 int import_command(const TransferArguments& arguments, const CommonArguments& common);
 int export_command(const TransferArguments& arguments, const CommonArguments& common);

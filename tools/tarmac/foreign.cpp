@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "core/diagnostics.h"
 #include "core/error.h"
+#include "core/merged_sweeps.h"
 #include "tools/estimate/outputs.h"
 
 namespace tarmac::tools {
@@ -47,7 +50,11 @@ ChildRequest foreign_command(const ForeignTool& tool, const fs::path& workplace)
 core::Estimate estimate_from_poses(const std::string& name, const ForeignTool& tool,
                                    const std::vector<io::StampedPose>& poses, const core::Recording& recording) {
   if (poses.empty()) throw core::InputError("the trajectory holds no pose");
-  const core::SE3 T_lidar_body = recording.rig().lidars.at(0).T_body_lidar.inverse();
+  // Several LiDARs were handed over as one, whose frame is the body's.
+  std::optional<core::MergedSweeps> merged;
+  if (recording.rig().lidars.size() > 1) merged.emplace(recording);
+  const core::Rig& rig = merged ? merged->rig() : recording.rig();
+  const core::SE3 T_lidar_body = rig.lidars.at(0).T_body_lidar.inverse();
   std::vector<core::Time> times;
   std::vector<core::SE3> T_map_body;
   for (const io::StampedPose& pose : poses) {
@@ -58,7 +65,7 @@ core::Estimate estimate_from_poses(const std::string& name, const ForeignTool& t
   estimate.estimator = name;
   estimate.causal.append(core::Segment::sampled(model_of(tool.interpolation), std::move(times), std::move(T_map_body)));
   for (std::size_t i = 0; i < recording.sweep_count(); ++i) {
-    const core::LidarSweep sweep = recording.sweep(i);
+    const core::LidarSweep sweep = merged ? merged->sweep(i) : recording.sweep(i);
     core::SweepResult result{sweep.index,          sweep.begin, sweep.end, sweep.end, core::SweepStatus::lost,
                              core::SE3::Identity()};
     if (estimate.causal.covers(sweep.end)) {

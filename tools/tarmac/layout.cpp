@@ -62,6 +62,13 @@ std::vector<RunFolder> runs_below(const fs::path& folder) {
   return sorted;
 }
 
+fs::path recording_of(const fs::path& from) {
+  if (fs::is_regular_file(from / "manifest.json")) return from;
+  if (fs::is_directory(from / "recording")) return from / "recording";
+  throw core::InputError(
+      fmt::format("{}: is no recording and no folder of a run (no manifest.json, no recording/)", from.string()));
+}
+
 std::vector<fs::path> estimator_folders(const RunFolder& run) {
   std::vector<fs::path> folders;
   for (const auto& entry : fs::directory_iterator(run.root)) {

@@ -23,6 +23,9 @@ std::vector<std::filesystem::path> scenario_folders();
 /// The runs below DIR: DIR itself, or its seed-N folders in order of N. Throws InputError when there is none.
 std::vector<RunFolder> runs_below(const std::filesystem::path& folder);
 
+/// The recording that a path means: itself, or that of a run. Throws InputError when it is neither.
+std::filesystem::path recording_of(const std::filesystem::path& from);
+
 /// Estimator folders of a run that hold a finished outcome, sorted by name.
 std::vector<std::filesystem::path> estimator_folders(const RunFolder& run);
 

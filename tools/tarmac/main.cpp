@@ -7,6 +7,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "io/world/mesh_readers.h"
 #include "tools/tarmac/build_info.h"
 #include "tools/tarmac/commands.h"
 #include "tools/tarmac/interrupt.h"
@@ -59,6 +60,7 @@ void add_scenario_options(CLI::App* command, Arguments& a, bool needs_out) {
   command->add_option("--set", a.scenario.sets, "override a field: motion.cruise_m_s=5 (repeatable)")
       ->allow_extra_args(false);
   command->add_flag("--fast", a.scenario.fast, "lift the pinned instruction set of the ray tracer");
+  command->add_flag("--force", a.scenario.force, "go on where the disk seems to have too little room");
   add_jobs(command, a);
 }
 
@@ -180,6 +182,8 @@ void add_commands(CLI::App& app, Arguments& a) {
   CLI::App* simulate = add(app, a, "simulate", "make a recording, with the truth beside it",
                            [&a] { return simulate_command(a.scenario, a.common); });
   add_scenario_options(simulate, a, true);
+  simulate->add_flag("--point-truth", a.scenario.point_truth,
+                     "store every point's true range, normal and incidence too (as truth.per_point=true)");
 
   CLI::App* estimate = add(app, a, "estimate", "run estimators on a recording (or a plain folder)",
                            [&a] { return estimate_command(a.estimate, a.common); });
@@ -210,18 +214,19 @@ void add_commands(CLI::App& app, Arguments& a) {
   add_compare_command(app, a);
 
   CLI::App* list = add(app, a, "list", "what there is", [&a] { return list_command(a.list_kind, a.common); });
-  list->add_option(
-      "kind", a.list_kind,
-      "scenarios, sweeps, gates, scenes, motions, sensors, imus, faults, estimators or metrics (default: all)");
+  list->add_option("kind", a.list_kind,
+                   "scenarios, sweeps, gates, scenes, aircraft, equipment, motions, sensors, imus, faults, estimators "
+                   "or metrics (default: all)");
 
   CLI::App* describe = add(app, a, "describe", "one thing in full: options, defaults, ranges, sources",
                            [&a] { return describe_command(a.describe, a.common); });
   describe
       ->add_option("kind", a.describe.kind,
-                   "scenario, sweep, gate, scene, motion, sensor, imu, fault, estimator or metric")
+                   "scenario, sweep, gate, scene, aircraft, equipment, motion, sensor, imu, fault, estimator or metric")
       ->required();
-  describe->add_option("name", a.describe.name, "its name")->required();
-  describe->add_option("-o,--out", a.describe.picture, "write a picture (scene and scenario)");
+  describe->add_option("name", a.describe.name, "its name, or all")->required();
+  describe->add_option("-o,--out", a.describe.picture,
+                       "write a picture (scene, scenario, aircraft, equipment; of all: a contact sheet), .png or .jpg");
 
   CLI::App* bench = add(app, a, "bench", "what simulating, estimating and scoring cost on this machine",
                         [&a] { return bench_command(a.bench, a.common); });
@@ -236,14 +241,20 @@ void add_commands(CLI::App& app, Arguments& a) {
                                          [&a] { return import_command(a.transfer, a.common); })
                                    : add(app, a, "export", "write a recording or a trajectory in another format",
                                          [&a] { return export_command(a.transfer, a.common); });
-    transfer->add_option("--format", a.transfer.format, "plain, kitti or tum")
+    std::vector<std::string> formats = {"plain", "kitti", "tum"};
+    if (!importing) formats.push_back("exr");
+    transfer->add_option("--format", a.transfer.format, importing ? "plain, kitti or tum" : "plain, kitti, tum or exr")
         ->required()
-        ->check(CLI::IsMember({"plain", "kitti", "tum"}));
+        ->check(CLI::IsMember(formats));
     transfer->add_option("from", a.transfer.from, importing ? "what to read" : "folder of a run or a recording")
         ->required();
     transfer->add_option("-o,--out", a.transfer.to, "what to write")->required();
-    if (!importing)
-      transfer->add_option("-e,--estimator", a.transfer.estimator, "whose trajectory (default: the truth's)");
+    if (importing) continue;
+    transfer->add_option("-e,--estimator", a.transfer.estimator, "whose trajectory (default: the truth's)");
+    transfer->add_option("--sweep", a.transfer.sweep, "exr: index of the one sweep to write (default: all)")
+        ->check(CLI::NonNegativeNumber);
+    transfer->add_option("--lidar", a.transfer.lidar, "exr: number of the LiDAR")->check(CLI::NonNegativeNumber);
+    transfer->add_flag("--no-truth", a.transfer.no_truth, "exr: leave out normal, incidence, label and the like");
   }
 }
 
@@ -302,5 +313,6 @@ int run_main(int argc, char** argv) {
 }  // namespace tarmac::tools
 
 int main(int argc, char** argv) {
+  tarmac::io::world::install_mesh_readers();
   return tarmac::tools::run_main(argc, argv);
 }

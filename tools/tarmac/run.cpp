@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include "core/error.h"
@@ -56,6 +57,7 @@ Plan make_plan(const ScenarioArguments& arguments, bool with_estimators) {
   Plan plan;
   std::vector<scenarios::Override> overrides;
   for (const std::string& set : arguments.sets) overrides.push_back(scenarios::parse_override(set));
+  if (arguments.point_truth) overrides.emplace_back("truth.per_point", "true");
   const fs::path file = scenarios::find_scenario(arguments.scenario, scenario_folders());
   plan.scenario = scenarios::load_scenario(file, overrides);
   check_world(plan.scenario);
@@ -69,6 +71,34 @@ Plan make_plan(const ScenarioArguments& arguments, bool with_estimators) {
   plan.out = arguments.out.empty() ? fs::path("out") / plan.scenario.name : fs::path(arguments.out);
   refuse_mixed_layouts(plan);
   return plan;
+}
+
+/// What all seeds of the plan about take on the disk. Full diagnostics hold some bytes a ray for each estimator.
+double bytes_of(const Plan& plan, const std::string& diagnostics) {
+  constexpr double diagnostics_bytes_per_ray = 5, files_bytes = 5e5;
+  const sim::Workload work =
+      sim::workload_of(plan.scenario.rig, plan.scenario.duration(), plan.scenario.truth.per_point);
+  double bytes = work.bytes + files_bytes;
+  const double a_ray = diagnostics == "full" ? diagnostics_bytes_per_ray : 0;
+  bytes += static_cast<double>(plan.estimators.size()) * (files_bytes + a_ray * static_cast<double>(work.rays));
+  return bytes * static_cast<double>(plan.seeds.size());
+}
+
+/// Says what a plan takes on the disk, before anything is written; throws InputError where there is less room.
+void check_room(const Plan& plan, const ScenarioArguments& arguments, const Console& console) {
+  fs::path at = fs::absolute(plan.out);
+  while (!fs::exists(at) && at.has_relative_path()) at = at.parent_path();
+  const double needed_mb = 1e-6 * bytes_of(plan, arguments.diagnostics);
+  const double free_mb = 1e-6 * static_cast<double>(fs::space(at).available);
+  console.say(fmt::format("disk: about {:.0f} MB, of {:.0f} MB that are free", std::ceil(needed_mb), free_mb));
+  if (needed_mb <= free_mb) return;
+  const std::string words =
+      fmt::format("{}: about {:.0f} MB are needed, and the disk has {:.0f} MB free", at.string(), needed_mb, free_mb);
+  if (!arguments.force)
+    throw core::InputError(words +
+                           "; make room, ask for a shorter drive or a smaller sensor, give another folder with "
+                           "-o, or --force");
+  console.warn(words + "; going on, as --force was given");
 }
 
 /// Simulates one seed into its folder. Until provenance.json stands there again, the folder is no finished run.
@@ -120,6 +150,7 @@ int CommonArguments::threads() const {
 int run_command(const ScenarioArguments& arguments, const CommonArguments& common) {
   const Console console(common.quiet);
   const Plan plan = make_plan(arguments, true);
+  check_room(plan, arguments, console);
   bool failed = false;
   std::vector<RunFolder> runs;
   std::vector<metrics::Evaluation> evaluations;
@@ -146,6 +177,7 @@ int run_command(const ScenarioArguments& arguments, const CommonArguments& commo
 int simulate_command(const ScenarioArguments& arguments, const CommonArguments& common) {
   const Console console(common.quiet);
   const Plan plan = make_plan(arguments, false);
+  check_room(plan, arguments, console);
   for (const std::uint64_t seed : plan.seeds) {
     const Provenance provenance = simulate_seed(plan, seed, arguments, common, console);
     save_provenance(plan.folder(seed).provenance(), provenance);

@@ -8,19 +8,13 @@
 #include "io/sensor/tum.h"
 #include "tools/tarmac/commands.h"
 #include "tools/tarmac/console.h"
+#include "tools/tarmac/export_images.h"
 #include "tools/tarmac/layout.h"
 
 namespace tarmac::tools {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path recording_of(const fs::path& from) {
-  if (fs::is_regular_file(from / "manifest.json")) return from;
-  if (fs::is_directory(from / "recording")) return from / "recording";
-  throw core::InputError(
-      fmt::format("{}: is no recording and no folder of a run (no manifest.json, no recording/)", from.string()));
-}
 
 /// The trajectory that `export` writes: an estimator's dense one, or the truth.
 fs::path trajectory_of(const TransferArguments& arguments) {
@@ -46,7 +40,9 @@ std::vector<io::StampedPose> poses_at_mid_sweep(const core::Estimate& estimate, 
           "{}: sweep {} has no pose, and KITTI's poses.txt needs one a sweep; export as tum, or the recording alone",
           estimate.estimator, sweep.index));
     }
-    poses.push_back({middle, estimate.headline().pose(middle) * rig.lidars.at(0).T_body_lidar});
+    // Of several LiDARs the clouds are merged, in the body's frame.
+    const core::SE3 T_body_cloud = rig.lidars.size() > 1 ? core::SE3::Identity() : rig.lidars.at(0).T_body_lidar;
+    poses.push_back({middle, estimate.headline().pose(middle) * T_body_cloud});
   }
   return poses;
 }
@@ -73,6 +69,7 @@ int export_command(const TransferArguments& arguments, const CommonArguments& co
     fmt::print("{}\n", arguments.to);
     return 0;
   }
+  if (arguments.format == "exr") return export_images(arguments, console);
   const core::Recording recording = core::Recording::open(recording_of(arguments.from));
   if (arguments.format == "plain") {
     if (!arguments.estimator.empty()) {

@@ -38,6 +38,8 @@ std::string resolve_scenario(const scenarios::Scenario& scenario, std::uint64_t 
   text += "rig:\n" + sim::resolve_rig(scenario.rig);
   if (const std::string faults = sim::resolve_faults(scenario.faults, scenario.rig); !faults.empty())
     text += "faults:\n" + faults;
+  // Only where it is asked for: the resolved text is what tells one simulated world from another.
+  if (scenario.truth.per_point) text += "truth:\n  per_point: true\n";
   if (!estimators.empty()) text += "estimators:\n";
   for (const EstimatorRequest& request : estimators) {
     const std::string options = resolved_options(request);
@@ -55,6 +57,7 @@ sim::SimulationInput build_world(const scenarios::Scenario& scenario, std::uint6
   input.motion = sim::truth::make_motion(scenario.motion, scenario.duration(), input.scene->ground, seed);
   input.rig = scenario.rig;
   input.faults = scenario.faults;
+  input.point_truth = scenario.truth.per_point;
   input.resolved_scenario = resolved;
   input.resolved_motion = sim::truth::resolve_motion(scenario.motion);
   return input;

@@ -17,6 +17,9 @@ namespace tarmac::sim::lidar {
 struct Echoes {
   std::uint64_t first_firing = 0;  ///< number in the recording of firing 0 of the batch
   std::size_t channels = 1;
+  /// Where these are the echoes of a few firings only: their numbers in the recording. Empty: one each of firings in a
+  /// row, from first_firing on.
+  std::vector<std::uint64_t> firings;
   std::vector<double> range_m;  ///< raw range from the sensor's datum; 0 = no echo
   std::vector<float> cos_incidence;
   std::vector<std::uint16_t> material;
@@ -27,6 +30,8 @@ struct Echoes {
   void resize(std::size_t n);
   std::vector<float> draws;    ///< scratch for an effect's random numbers
   std::vector<float> scratch;  ///< for whatever else an effect keeps by firing
+  /// Standard normals of the stream into `draws`, each at its firing's number.
+  void draw(const core::RandomStream& stream);
 };
 
 /// signal = rho_eq(theta) cos(theta), monostatic, from the material (scenes::Material):
@@ -40,6 +45,8 @@ class Reflectance {
  public:
   explicit Reflectance(const std::vector<scenes::Material>& materials);
   void operator()(Echoes& echoes) const;
+  /// The same for arrays of `count` hits.
+  void signals(std::size_t count, const std::uint16_t* material, const float* cos_incidence, float* signal) const;
 
  private:
   struct Coefficients {
@@ -57,6 +64,7 @@ class Detection {
   Detection(const Profile& profile, std::uint64_t seed, const char* stream);
   void operator()(Echoes& echoes) const;
   double snr(double signal, double range_m) const;
+  double threshold() const { return threshold_; }
 
  private:
   core::RandomStream stream_;
@@ -77,10 +85,44 @@ class RangeNoise {
   std::vector<float> sigma_m_;
 };
 
-/// A constant range error of each channel, drawn once a sensor.
+/// Gaussian, by range, brightness and incidence:
+///   sigma^2 = sigma_sheet(r)^2 (1/2 + 1/2 0.8 / signal) + (smear r div tan(theta))^2,   all times scale^2
+/// Half of the sheet's variance is the clock's, half the receiver's, which goes with one over signal over noise; so a
+/// target of 80 % seen square has the sheet's sigma at every range. signal is the echo's equivalent reflectance times
+/// cosine, div the beam's full width; the last term is where in its spot a slanted surface answers from.
+class SnrNoise {
+ public:
+  static constexpr double reference_signal = 0.8;
+  static constexpr double max_ratio = 100;   ///< of variances: the darkest echo that is detected at all
+  static constexpr double max_tangent = 12;  ///< of the incidence: beyond 85 degrees the sheet's spot ends
+  SnrNoise(const Profile& profile, double scale, double smear, std::uint64_t seed, const char* stream);
+  void operator()(Echoes& echoes) const;
+  double sigma_m(double range_m, double signal, double cos_incidence) const;
+
+ private:
+  core::RandomStream stream_;
+  std::vector<double> from_m_, sigma_m_;
+  double scale_, spread_;  // of the spot a metre of range
+};
+
+/// What bright echoes do to the receiver: a range error by brightness,
+///   walk_m clamp(log10(signal / 0.2), -1, 1),
+/// and where it clips (signal > saturation_signal; 0 = never) saturation_bias_m min(1, log10(signal / that) / 2) more,
+/// with the intensity at its upper end.
+struct Brightness {
+  double walk_m = 0, saturation_signal = 0, saturation_bias_m = 0;
+  bool saturates(float signal) const { return saturation_signal > 0 && signal > saturation_signal; }
+  double bias_m(float signal) const;
+  /// Moves the ranges and lifts what clips to a signal of full intensity.
+  void operator()(Echoes& echoes) const;
+};
+
+/// A constant range error of each channel, drawn once a sensor. `channels`: whose firings a cycle holds, in their
+/// order; empty: every channel's of the profile, one after the other.
 class ChannelBias {
  public:
-  ChannelBias(const Profile& profile, double scale, std::uint64_t seed, const char* stream);
+  ChannelBias(const Profile& profile, double scale, std::uint64_t seed, const char* stream,
+              std::span<const std::uint32_t> channels = {});
   void operator()(Echoes& echoes) const;
   std::span<const double> bias_m() const { return bias_m_; }
 

@@ -32,7 +32,7 @@ Intensity::Intensity(bool noise, std::uint64_t seed, const char* stream) : strea
 
 void Intensity::operator()(Echoes& echoes) const {
   if (noise_)
-    stream_.normals(echoes.first_firing, echoes.draws);
+    echoes.draw(stream_);
   else
     std::fill(echoes.draws.begin(), echoes.draws.end(), 0.0f);
   in_percent(echoes.size(), echoes.signal.data(), echoes.intensity.data());

@@ -25,7 +25,7 @@ RangeNoise::RangeNoise(const Profile& p, double scale, std::uint64_t seed, const
 }
 
 void RangeNoise::operator()(Echoes& echoes) const {
-  stream_.normals(echoes.first_firing, echoes.draws);
+  echoes.draw(stream_);
   std::vector<float>& sigma_m = echoes.scratch;
   sigma_m.assign(echoes.size(), sigma_m_.front());
   for (std::size_t k = 1; k < from_m_.size(); ++k)

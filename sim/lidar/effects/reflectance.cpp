@@ -38,6 +38,13 @@ void Echoes::resize(std::size_t n) {
   draws.resize(n);
 }
 
+void Echoes::draw(const core::RandomStream& stream) {
+  if (firings.empty())
+    stream.normals(first_firing, draws);
+  else
+    for (std::size_t i = 0; i < firings.size(); ++i) stream.normals(firings[i], {&draws[i], 1});
+}
+
 Reflectance::Reflectance(const std::vector<scenes::Material>& materials) {
   for (const scenes::Material& m : materials) {
     const double s2 = m.oren_nayar_sigma_rad * m.oren_nayar_sigma_rad, a2 = m.ggx_alpha * m.ggx_alpha;
@@ -49,15 +56,19 @@ Reflectance::Reflectance(const std::vector<scenes::Material>& materials) {
 }
 
 void Reflectance::operator()(Echoes& echoes) const {
+  signals(echoes.size(), echoes.material.data(), echoes.cos_incidence.data(), echoes.signal.data());
+}
+
+void Reflectance::signals(std::size_t count, const std::uint16_t* material, const float* cos_incidence,
+                          float* signal) const {
   static_assert(sizeof(Coefficients) == 6 * sizeof(float));
-  reflect(echoes.size(), echoes.material.data(), echoes.cos_incidence.data(), &materials_.front().diffuse,
-          echoes.signal.data());
-  for (std::size_t i = 0; i < echoes.size(); ++i) {
-    const float retro = materials_[echoes.material[i]].retro;
+  reflect(count, material, cos_incidence, &materials_.front().diffuse, signal);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float retro = materials_[material[i]].retro;
     if (retro <= 0) continue;
-    const float c = std::clamp(echoes.cos_incidence[i], 1e-4f, 1.0f);
+    const float c = std::clamp(cos_incidence[i], 1e-4f, 1.0f);
     const float theta = std::acos(c) / retro_half_width_rad, theta2 = theta * theta;
-    echoes.signal[i] += c * retro * std::exp(-theta2 * theta2);
+    signal[i] += c * retro * std::exp(-theta2 * theta2);
   }
 }
 

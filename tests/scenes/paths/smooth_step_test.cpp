@@ -42,6 +42,13 @@ TEST(SmoothStep, IntegralMatchesAMuchFinerQuadrature) {
     sum += Gauss3::integrate(f, k / double{parts}, (k + 1) / double{parts});
     ASSERT_NEAR(smooth_step_integral((k + 1) / double{parts}), sum, 1e-14) << k;
   }
+  double twice = 0;
+  for (int k = 0; k < parts; ++k) {
+    twice += Gauss3::integrate(smooth_step_integral, k / double{parts}, (k + 1) / double{parts});
+    ASSERT_NEAR(smooth_step_second_integral((k + 1) / double{parts}), twice, 1e-14) << k;
+  }
+  EXPECT_EQ(smooth_step_second_integral(-0.5), 0);
+  EXPECT_NEAR(smooth_step_second_integral(3), twice + (9 - 1) / 2.0 - (3 - 1) / 2.0, 1e-14);
   EXPECT_EQ(smooth_step_integral(-0.5), 0);
   EXPECT_EQ(smooth_step_integral(3), 2.5);
 }

@@ -41,6 +41,30 @@ TEST(SpeedProfile, DerivativesMatchDifferencesThroughRampsAndRipple) {
   }
 }
 
+TEST(SpeedProfile, OnsetAndAntiLockHaveExactDerivativesAndKeepTheDistance) {
+  SpeedPlan plan = brake();
+  plan.events[0].onset_s = 0.5;
+  plan.events[1].onset_s = 0.2, plan.events[1].abs_m_s2 = 1, plan.events[1].abs_hz = 6;
+  const SpeedProfile profile = make_profile(plan, 100, 0.02);
+  const auto f = [&](double t) { return profile.at(t).f; };
+  const auto d1 = [&](double t) { return profile.at(t).d1; };
+  const auto d2 = [&](double t) { return profile.at(t).d2; };
+  for (double t = 3.03; t < 25; t += 0.0373) {
+    const Jet s = profile.at(t);
+    EXPECT_NEAR(s.d1, derivative_of(f, t, 1e-3), 1e-8) << t;
+    EXPECT_NEAR(s.d2, derivative_of(d1, t, 1e-3), 1e-6) << t;
+    EXPECT_NEAR(s.d3, derivative_of(d2, t, 1e-3), 1e-3) << t;
+  }
+  const auto& ramp = profile.ramps()[2];
+  EXPECT_DOUBLE_EQ(ramp.duration_s, 4.5 / 5.5 + 0.2);
+  const Jet before = profile.planned(ramp.end_s() - 1e-9), after = profile.planned(ramp.end_s() + 1e-9);
+  EXPECT_NEAR(before.f, after.f, 1e-8);
+  EXPECT_NEAR(before.d1, 2.5, 1e-9);
+  double slowest = 1e9;
+  for (double t = ramp.t_s; t < ramp.end_s(); t += 1e-3) slowest = std::min(slowest, profile.at(t).d1);
+  EXPECT_GT(slowest, 2.3);
+}
+
 TEST(SpeedProfile, RestIsExactlyRestBeforeAndAfter) {
   const SpeedProfile profile = make_profile(brake(), 100, 0.02);
   for (const double t : {0.0, 1.234, 3.0}) {
@@ -93,6 +117,7 @@ TEST(SpeedProfile, NamesTheEventThatDoesNotFit) {
   EXPECT_NE(too_late.message.find("raise peak_m_s2"), std::string::npos) << too_late.message;
   EXPECT_NE(problem_of({{.to_m_s = 7, .at_m = 3}}).message.find("stands still"), std::string::npos);
   EXPECT_NE(problem_of({{.to_m_s = 7, .at_s = 3, .at_m = 3}}).message.find("exclude"), std::string::npos);
+  EXPECT_NE(problem_of({{.to_m_s = 7, .peak_m_s2 = 7, .onset_s = 1.5}}).message.find("onset_s"), std::string::npos);
   EXPECT_NE(problem_of({{.to_m_s = 7}, {.to_m_s = 5, .at_s = 4}}).message.find("before the end"), std::string::npos);
 }
 

@@ -61,7 +61,7 @@ inline LabelledSweep labelled_sweep(std::int64_t index) {
 
 /// Options as a scenario gives them.
 inline sim::faults::FaultOptions faults_of(const std::string& yaml) {
-  return sim::faults::read_faults(core::ConfigNode::parse(yaml, "drive.yaml").child("faults"), true, 10);
+  return sim::faults::read_faults(core::ConfigNode::parse(yaml, "drive.yaml").child("faults"), true, {10.0});
 }
 
 }  // namespace tarmac::tests

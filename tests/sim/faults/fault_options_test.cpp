@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 std::string error_of(const std::string& yaml, bool has_imu = true, double sweep_rate_hz = 10) {
   try {
-    read_faults(ConfigNode::parse(yaml, "drive.yaml").child("faults"), has_imu, sweep_rate_hz);
+    read_faults(ConfigNode::parse(yaml, "drive.yaml").child("faults"), has_imu, {sweep_rate_hz});
   } catch (const core::InputError& error) {
     return error.what();
   }
@@ -58,7 +58,7 @@ TEST(FaultOptions, MistakesOfTheCommandLineAreReportedAsSuch) {
   ConfigNode node = ConfigNode::parse("name: drive\n", "drive.yaml");
   node.set("faults.lidar.clock_offset_ms", "five");
   try {
-    read_faults(node.child("faults"), true, 10);
+    read_faults(node.child("faults"), true, {10.0});
     FAIL();
   } catch (const core::InputError& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr("--set faults.lidar.clock_offset_ms"), HasSubstr("finite number")));

@@ -178,6 +178,37 @@ TEST(Reflectance, GlossyLobeIsThatOfMicrofacets) {
   }
 }
 
+TEST(Reflectance, HoldsTheTablesOfTheModels) {
+  // Equivalent reflectance over diffuse reflectance, by slope and angle: Oren-Nayar seen from the light.
+  const double rough[][7] = {{0.20, 0.95, 0.99, 1.15, 1.45, 1.72, 2.52},
+                             {0.35, 0.86, 0.94, 1.25, 1.80, 2.31, 3.82},
+                             {0.50, 0.78, 0.88, 1.28, 1.98, 2.63, 4.55}};
+  const double rough_deg[] = {0, 30, 60, 75, 80, 85};
+  for (const auto& row : rough)
+    for (int k = 0; k < 6; ++k) {
+      scenes::Material m;
+      m.diffuse = 0.3;
+      m.oren_nayar_sigma_rad = row[0];
+      EXPECT_NEAR(signal_of(m, rough_deg[k]) / (0.3 * std::cos(rough_deg[k] * rad)), row[k + 1], 0.0051)
+          << row[0] << " at " << rough_deg[k];
+    }
+  // Glossy skin and polished metal: alpha, F0, then 0, 1, 2, 5, 10 and 20 degrees.
+  const double glossy[][8] = {
+      {0.05, 0.04, 4.0, 3.2, 1.8, 0.25, 0.024, 0.002},    {0.10, 0.04, 1.0, 0.94, 0.80, 0.33, 0.065, 0.007},
+      {0.20, 0.04, 0.25, 0.25, 0.24, 0.18, 0.087, 0.020}, {0.05, 0.87, 87, 69, 39, 5.4, 0.53, 0.043},
+      {0.15, 0.87, 9.7, 9.4, 8.7, 5.5, 1.9, 0.30},        {0.30, 0.60, 1.7, 1.7, 1.6, 1.45, 1.0, 0.39}};
+  const double glossy_deg[] = {0, 1, 2, 5, 10, 20};
+  for (const auto& row : glossy)
+    for (int k = 0; k < 6; ++k) {
+      scenes::Material m;
+      m.diffuse = 0;
+      m.ggx_alpha = row[0];
+      m.specular_f0 = row[1];
+      const double rho = signal_of(m, glossy_deg[k]) / std::cos(glossy_deg[k] * rad);
+      EXPECT_NEAR(rho / row[k + 2], 1, row[k + 2] < 0.01 ? 0.2 : 0.05) << row[0] << " at " << glossy_deg[k];
+    }
+}
+
 TEST(Reflectance, RetroLobeOutshinesEverythingUpToWideAngles) {
   scenes::Material tape;
   tape.diffuse = 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -77,6 +78,73 @@ TEST_F(Simulate, GivesTheSameRecordingAtAnyNumberOfThreadsAndEveryTime) {
   for (const int threads : {2, 1, 3}) {
     EXPECT_EQ(run(input_of(small_rig), threads).recording_hash, hash) << threads;
     EXPECT_EQ(label_bytes(), labels) << threads;
+  }
+}
+
+// The outer rays, the panes, the own body, light beside its beam, second returns and noise, per-point truth and faults.
+constexpr const char* everything_rig =
+    "lidar: {model: ouster-os1-64-gen2, columns: 512, beam: {rays: 7, returns: dual, glass: true, halo: true, "
+    "saturation: true, range_walk_m: 0.005, range_noise: snr, false_alarms_per_shot: 0.001}}\n"
+    "body: {kind: box}\nimu: {rate_hz: 200}\n";
+
+TEST_F(Simulate, GivesTheSameRecordingAndTruthAtAnyNumberOfThreadsWithEverythingOn) {
+  const auto input = [&] {
+    SimulationInput result = input_of(everything_rig);
+    scenes::Scene scene = yard();
+    scenes::Material pane;
+    pane.name = "pane";
+    pane.diffuse = 0.005;
+    pane.specular_f0 = 0.2;
+    pane.ggx_alpha = 0.002;
+    pane.transmission = 0.3;
+    scene.materials.push_back(pane);
+    scenes::Mesh mesh = tests::box({0.01, 4, 3});
+    std::fill(mesh.materials.begin(), mesh.materials.end(), std::uint16_t{1});
+    tests::add_instance(scene, mesh, tests::pose({8, 0, 3}), -1, scenes::Label::glass);
+    result.scene = std::make_shared<scenes::Scene>(std::move(scene));
+    result.point_truth = true;
+    result.faults = ConfigNode::parse("lidar: {lost_packets: 0.05, clock_offset_ms: 2}\n", "test.yaml");
+    return result;
+  };
+  const std::string hash = run(input()).recording_hash, labels = label_bytes();
+  for (const int threads : {2, 3}) {
+    EXPECT_EQ(run(input(), threads).recording_hash, hash) << threads;
+    EXPECT_EQ(label_bytes(), labels) << threads;
+  }
+  const core::Recording read = core::Recording::open(recording());
+  const core::ChunkReader chunks(truth() / "lidar0_labels.chunks");
+  std::set<truth::ReturnKind> kinds;
+  for (std::size_t k = 0; k < chunks.size(); ++k) {
+    const truth::PointLabels points = truth::labels_from_chunk(chunks.read(k));
+    EXPECT_TRUE(points.has_point_truth());
+    EXPECT_EQ(points.label.size(), read.sweep(k).size());
+    for (std::size_t i = 0; i < points.label.size(); ++i) {
+      kinds.insert(points.kind[i]);
+      if (points.kind[i] == truth::ReturnKind::self) EXPECT_EQ(points.label[i], scenes::Label::own_body);
+      if (points.kind[i] == truth::ReturnKind::noise) EXPECT_EQ(points.label[i], scenes::Label::none);
+    }
+  }
+  for (const auto kind : {truth::ReturnKind::self, truth::ReturnKind::noise, truth::ReturnKind::transmitted,
+                          truth::ReturnKind::ghost, truth::ReturnKind::mixed})
+    EXPECT_TRUE(kinds.contains(kind)) << truth::name_of(kind);
+}
+
+TEST_F(Simulate, StoresPointTruthOnRequestOnlyAndRecordsTheSame) {
+  SimulationInput input = input_of(small_rig);
+  const std::string plain = run(input).recording_hash;
+  EXPECT_FALSE(truth::labels_from_chunk(core::ChunkReader(truth() / "lidar0_labels.chunks").read(0)).has_point_truth());
+  input.point_truth = true;
+  EXPECT_EQ(run(input).recording_hash, plain);
+  const core::LidarSweep sweep = core::Recording::open(recording()).sweep(0);
+  const truth::PointLabels points =
+      truth::labels_from_chunk(core::ChunkReader(truth() / "lidar0_labels.chunks").read(0));
+  ASSERT_EQ(points.true_range_m.size(), sweep.size());
+  for (std::size_t i = 0; i < sweep.size(); ++i) {
+    EXPECT_NEAR(points.true_range_m[i], sweep.point(i).norm(), 0.35);  // noise of at most 5 cm, seven of its sigmas
+    const Eigen::Vector3f n(points.normal_x[i], points.normal_y[i], points.normal_z[i]);
+    EXPECT_NEAR(n.norm(), 1, 1e-5);
+    EXPECT_GT(points.cos_incidence[i], 0);
+    if (points.label[i] == scenes::Label::pavement) EXPECT_NEAR(n.z(), 1, 1e-5);
   }
 }
 
@@ -197,8 +265,23 @@ TEST(Rig, MistakesAreNamedWithLineFieldAndWhatIsAllowed) {
   EXPECT_NE(complaint_about("imu: {rate_hz: 1000000}\n").find("at most"), std::string::npos);
 }
 
+TEST(Rig, MistakesInBeamsAndBodiesAreNamed) {
+  const std::string rays = complaint_about("lidar:\n  beam:\n    rays: 5\n");
+  EXPECT_NE(rays.find("test.yaml:3"), std::string::npos) << rays;
+  EXPECT_NE(rays.find("1, 3 or 7"), std::string::npos) << rays;
+  const std::string returns = complaint_about("lidar: {beam: {returns: both}}\n");
+  EXPECT_NE(returns.find("dual"), std::string::npos) << returns;
+  const std::string inside = complaint_about("lidar: {}\nbody: {kind: box, height_m: 2.5}\n");
+  EXPECT_NE(inside.find("inside"), std::string::npos) << inside;
+  const std::string width = complaint_about(
+      "lidar:\n  model: mine\n  beam: {rays: 7}\n  profile: {timing: clock, cycle_us: 50, max_range_m: 100, "
+      "range_step_m: 0.01, range_10_percent_m: 50, range_80_percent_m: 90, threshold_snr: 5, sigma_from_m: [0], "
+      "sigma_m: [0.01], elevation_deg: [0], azimuth_offset_cw_deg: [0]}\n");
+  EXPECT_NE(width.find("divergence_mrad"), std::string::npos) << width;
+}
+
 TEST(Rig, ResolvedBlockReadsBackAsItself) {
-  for (const char* rig : {"lidar: {model: vlp-16}\n", small_rig, "gravity_m_s2: 9.81\n"}) {
+  for (const char* rig : {"lidar: {model: vlp-16}\n", small_rig, "gravity_m_s2: 9.81\n", everything_rig}) {
     const std::string resolved = resolve_rig(ConfigNode::parse(rig, "test.yaml"));
     EXPECT_EQ(resolve_rig(ConfigNode::parse(resolved, "resolved.yaml")), resolved);
     EXPECT_EQ(resolved.find("imu:") != std::string::npos, std::string(rig).find("imu:") != std::string::npos);
@@ -211,7 +294,7 @@ TEST(Catalogue, DescribesEverySensorAndRefusesOthers) {
     EXPECT_NE(describe_lidar(entry.name).find("elevation_deg"), std::string::npos);
   }
   EXPECT_THROW(describe_lidar("ouster"), core::InputError);
-  EXPECT_EQ(lidar_catalogue().size(), 6u);
+  EXPECT_EQ(lidar_catalogue().size(), 11u);
 }
 
 }  // namespace

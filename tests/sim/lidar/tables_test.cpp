@@ -1,10 +1,14 @@
 // The bundled tables against the fact sheets they were taken from, and the firing times against their formulas.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <set>
+#include <sstream>
 
 #include "core/config.h"
 #include "sim/lidar/firing.h"
@@ -23,6 +27,8 @@ struct Sheet {
 constexpr Sheet sheets[] = {{"hdl-64e-s2", "velodyne_hdl64e_s2"},
                             {"hdl-32e", "velodyne_hdl32e"},
                             {"vlp-16", "velodyne_vlp16"},
+                            {"vls-128", "velodyne_vls128"},
+                            {"ouster-os0-128-rev7", "ouster_os0_128_rev7"},
                             {"ouster-os1-128-rev7", "ouster_os1_128_rev7"},
                             {"ouster-os1-64-gen2", "ouster_os1_64_gen2"},
                             {"xt-32", "hesai_pandar_xt32"}};
@@ -73,6 +79,65 @@ TEST(Tables, HoldEveryNumberOfTheFactSheets) {
       if (std::string(sheet.profile) != "xt-32") {  // its optical centre is a fact about the whole head
         EXPECT_EQ(or_0(p.origin_left_m, c), row.horiz_off_m) << sheet.profile << " channel " << c;
       }
+    }
+  }
+}
+
+/// A Pandar128's row: an empty text where the channel is silent.
+struct PandarRow {
+  double elev_deg = 0, az_offset_cw_deg = 0;
+  int ring = -1;
+  std::vector<double> state_us;  // NaN where silent
+};
+
+std::vector<PandarRow> pandar_rows(const fs::path& csv, const std::vector<std::string>& states) {
+  std::ifstream file(csv);
+  std::vector<PandarRow> rows;
+  std::vector<std::string> names;
+  for (std::string line; std::getline(file, line);) {
+    std::vector<std::string> fields;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    std::istringstream in(line);
+    for (std::string field; std::getline(in, field, ',');) fields.push_back(field);
+    if (names.empty()) {
+      names = fields;
+      continue;
+    }
+    const auto value = [&](const std::string& name) {
+      const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+      return fields.at(at).empty() ? std::nan("") : std::stod(fields[at]);
+    };
+    PandarRow row{value("elev_deg"), value("az_offset_cw_deg"), static_cast<int>(value("ring")), {}};
+    for (const std::string& state : states) row.state_us.push_back(value(state));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST(Tables, PandarStatesHoldEveryTimeOfTheSheet) {
+  const char* data = std::getenv("TARMAC_DATA");
+  const fs::path csv = data ? fs::path(data) / ".." / "facts" / "sensors" / "hesai_pandar128.csv" : fs::path();
+  if (!data || !fs::exists(csv)) {
+    std::cerr << "\n*** NOT TESTED: the Pandar128's states against their sheet. Set TARMAC_DATA. ***\n\n";
+    GTEST_SKIP() << "TARMAC_DATA names no folder beside facts/sensors";
+  }
+  const std::pair<const char*, std::vector<std::string>> sheets_of_modes[] = {
+      {"pandar128", {"std_s0_far_us", "std_s1_far_us"}},
+      {"pandar128-high-res", {"hr_s0_us", "hr_s1_us", "hr_s2_us", "hr_s3_us"}}};
+  for (const auto& [name, states] : sheets_of_modes) {
+    const Profile& p = profile(name);
+    const std::vector<PandarRow> rows = pandar_rows(csv, states);
+    ASSERT_EQ(rows.size(), 128u);
+    ASSERT_EQ(p.channels(), 128u);
+    ASSERT_EQ(p.states.size(), states.size());
+    for (std::size_t c = 0; c < rows.size(); ++c) {
+      EXPECT_EQ(p.elevation_deg[c], rows[c].elev_deg);
+      EXPECT_EQ(p.azimuth_offset_cw_deg[c], rows[c].az_offset_cw_deg);
+      EXPECT_EQ(p.ring[c], rows[c].ring);
+      for (std::size_t s = 0; s < states.size(); ++s)
+        EXPECT_EQ(p.states[s].firing_us[c],
+                  std::isnan(rows[c].state_us[s]) ? AzimuthState::silent : rows[c].state_us[s])
+            << name << " channel " << c << " state " << s;
     }
   }
 }
@@ -157,6 +222,62 @@ TEST(FiringTimes, Xt32BeamsLeaveTheOpticalCentreAheadAndLeftOfTheAxis) {
   EXPECT_NEAR(o.z(), 0, 1e-12);
 }
 
+TEST(FiringTimes, Vls128GroupsOfEightFollowTheFormula) {
+  const Profile& p = profile("vls-128");
+  const FiringTable firing(p, {0, 10});
+  const SweepSpan sweep = firing.sweep(4);
+  for (const std::int64_t s : {0, 1, 900, 1875})
+    for (std::int64_t i = 0; i < 128; ++i) {
+      // t = 53.3 us sequence + 2.665 us (floor(i / 8) + floor(i / 64)); azimuth by the spin up to then.
+      const std::int64_t in_cycle_ns = 2'665 * (i / 8 + i / 64), t_ns = (sweep.first_cycle + s) * 53'300 + in_cycle_ns;
+      const auto c = static_cast<std::size_t>(i);
+      ASSERT_EQ(firing_ns(firing, sweep, s, c), t_ns);
+      const double rad = M_PI / 180, el = p.elevation_deg[c] * rad;
+      const double az = M_PI + 2 * M_PI * 10 * 1e-9 * static_cast<double>(t_ns) + p.azimuth_offset_cw_deg[c] * rad;
+      const Eigen::Vector3d expected(std::cos(el) * std::cos(az), -std::cos(el) * std::sin(az), std::sin(el));
+      ASSERT_LT((firing.direction(firing.cycle(sweep, s), c) - expected).norm(), 1e-9);
+    }
+  EXPECT_NEAR(1e9 / 53'300 * 128, 2'401'501, 1);  // returns a second
+}
+
+TEST(FiringTimes, PandarBlocksFireInTheOrderOfTheirStates) {
+  for (const char* name : {"pandar128", "pandar128-high-res"}) {
+    const Profile& p = profile(name);
+    const FiringTable firing(p, {0, 10});
+    const auto states = static_cast<std::int64_t>(p.states.size());
+    const auto block_ns = std::llround(p.cycle_us * 1e3);
+    ASSERT_EQ(firing.blocks(), p.states.size());
+    const SweepSpan sweep = firing.sweep(3);
+    const double rad = M_PI / 180;
+    std::multiset<std::pair<std::size_t, std::size_t>> fired;  // block, channel
+    for (std::size_t i = 0; i < firing.channels(); ++i) {
+      const std::size_t c = firing.channel_of(i), s = firing.block_of(i);
+      fired.insert({s, c});
+      EXPECT_EQ(firing.ring(i), p.ring[c]);
+      for (const std::int64_t k : {0, 100, 898}) {
+        const std::int64_t block = (sweep.first_cycle + k) * states + static_cast<std::int64_t>(s);
+        const std::int64_t t_ns = block * block_ns + std::llround(p.states[s].firing_us[c] * 1e3);
+        ASSERT_EQ(firing_ns(firing, sweep, k, i), t_ns) << name;
+        // Block azimuth plus the spin up to the firing.
+        const double az = 2 * M_PI * 10 * 1e-9 * static_cast<double>(t_ns) + p.azimuth_offset_cw_deg[c] * rad,
+                     el = p.elevation_deg[c] * rad;
+        const Eigen::Vector3d expected(std::cos(el) * std::cos(az), -std::cos(el) * std::sin(az), std::sin(el));
+        ASSERT_LT((firing.direction(firing.cycle(sweep, k), i) - expected).norm(), 1e-8) << name;
+      }
+    }
+    for (std::size_t s = 0; s < p.states.size(); ++s)
+      for (std::size_t c = 0; c < 128; ++c)
+        EXPECT_EQ(fired.count({s, c}), p.states[s].firing_us[c] == AzimuthState::silent ? 0u : 1u);
+  }
+  const auto points_a_second = [](const char* name) {
+    const FiringTable firing(profile(name), {0, 10});
+    return static_cast<double>(firing.sweep(99).first_cycle + firing.sweep(99).cycles) / 10 *
+           static_cast<double>(firing.channels());
+  };
+  EXPECT_NEAR(points_a_second("pandar128"), 2'304'000, 0.0005 * 2'304'000);
+  EXPECT_NEAR(points_a_second("pandar128-high-res"), 3'456'000, 0.0005 * 3'456'000);
+}
+
 TEST(FiringTimes, FiringsOfEverySensorAscendAcrossCyclesAndSweeps) {
   for (const std::string& name : profile_names()) {
     const Profile& p = profile(name);
@@ -168,7 +289,7 @@ TEST(FiringTimes, FiringsOfEverySensorAscendAcrossCyclesAndSweeps) {
       for (std::int64_t s = 0; s < sweep.cycles; ++s) {
         ASSERT_GT(firing_ns(firing, sweep, s, 0), cycle_start_ns) << name;
         cycle_start_ns = firing_ns(firing, sweep, s, 0);
-        for (std::size_t c = 0; c < p.channels(); ++c) {
+        for (std::size_t c = 0; c < firing.channels(); ++c) {
           ASSERT_GE(firing_ns(firing, sweep, s, c), last_ns + (c == 0 ? 1 : 0)) << name;
           last_ns = firing_ns(firing, sweep, s, c);
         }
@@ -188,6 +309,10 @@ TEST(FiringTimes, RevolutionsHoldTheStepsOfTheDataSheets) {
   EXPECT_NEAR(step_deg("vlp-16"), 0.1991, 5e-5);
   EXPECT_NEAR(step_deg("xt-32"), 0.18, 5e-5);
   EXPECT_NEAR(step_deg("ouster-os1-128-rev7"), 0.3515625, 1e-9);
+  EXPECT_NEAR(step_deg("ouster-os0-128-rev7"), 0.3515625, 1e-9);
+  EXPECT_NEAR(step_deg("vls-128"), 0.1919, 5e-5);
+  EXPECT_NEAR(step_deg("pandar128") / 2, 0.2, 5e-5);           // two blocks a cycle
+  EXPECT_NEAR(step_deg("pandar128-high-res") / 4, 0.1, 5e-5);  // four
 }
 
 }  // namespace

@@ -71,10 +71,10 @@ TEST_F(UserSensor, ScenarioFindsItsSensorBesideItselfAndResolvesToOneThatNeedsNo
   const ConfigNode again = ConfigNode::parse(resolved, "resolved.yaml");
   EXPECT_EQ(resolve_rig(again), resolved);
   const RigOptions options = read_rig(again);
-  EXPECT_EQ(options.lidar.model, "mine");
-  EXPECT_EQ(options.lidar.sweep_rate_hz, 20);
-  EXPECT_EQ(options.lidar.profile.elevation_deg, (std::vector<double>{-3, -1, 1, 3.25}));
-  EXPECT_EQ(options.lidar.profile.firing_us, (std::vector<double>{0, 1.5, 3, 4.5}));
+  EXPECT_EQ(options.lidars[0].model, "mine");
+  EXPECT_EQ(options.lidars[0].sweep_rate_hz, 20);
+  EXPECT_EQ(options.lidars[0].profile.elevation_deg, (std::vector<double>{-3, -1, 1, 3.25}));
+  EXPECT_EQ(options.lidars[0].profile.firing_us, (std::vector<double>{0, 1.5, 3, 4.5}));
   EXPECT_EQ(data_sheet(options).lidars.at(0).model, "mine");
   EXPECT_EQ(data_sheet(options).lidars.at(0).max_range_m, 80);
 }
@@ -94,7 +94,7 @@ TEST_F(UserSensor, PathGivenOnTheCommandLineIsTheCommandLines) {
       write("mine.yaml", std::string(clock_timing) + optics + "elevation_deg: [0, 1]\nazimuth_offset_cw_deg: [0, 0]\n");
   ConfigNode scenario = ConfigNode::parse("rig: {lidar: {model: vlp-16}}\n", "/nowhere/scenario.yaml");
   scenario.set("rig.lidar.model", fs::relative(sensor).string());
-  EXPECT_EQ(read_rig(scenario.child("rig")).lidar.profile.channels(), 2u);
+  EXPECT_EQ(read_rig(scenario.child("rig")).lidars[0].profile.channels(), 2u);
 }
 
 TEST_F(UserSensor, MissingFieldsAreNamedOneByOne) {
@@ -137,6 +137,41 @@ TEST_F(UserSensor, ImpossibleFiringTablesAreRefusedWithLineAndField) {
             {"mine.yaml:12", "elevation_dog", "did you mean 'elevation_deg'"});
   expect_in(complaint(std::string(optics) + clock_timing + "elevation_deg: [91]\nazimuth_offset_cw_deg: [0]\n"),
             {"mine.yaml:10", "elevation_deg", "91", "at most 90"});
+}
+
+TEST_F(UserSensor, ImpossibleStatesAreRefusedWithLineAndField) {
+  const std::string start =
+      std::string(optics) + "elevation_deg: [0, 1, 2]\nazimuth_offset_cw_deg: [0, 0, 0]\n" + clock_timing + "states:\n";
+  const auto state = [](const std::string& values) { return "  - firing_us: [" + values + "]\n"; };
+  EXPECT_EQ(complaint(start + state("30, 0, 12") + state("-1, 3, -1")), "");
+  expect_in(complaint(start + state("0, 1") + state("0, 1, 2")), {"mine.yaml:13", "2 values", "3 were expected"});
+  expect_in(complaint(start + state("0, 1, 2") + state("0, 1, -0.5")), {"mine.yaml:14", "channel 2", "-0.5", "silent"});
+  expect_in(complaint(start + state("0, 1, 2") + state("-1, -1, -1")), {"mine.yaml:14", "no channel fires"});
+  expect_in(complaint(start + state("0, 1, 50") + state("0, 1, 2")), {"mine.yaml:13", "take 50 us", "after 50 us"});
+  expect_in(complaint(start + state("30, 40, 70") + state("5, 6, 7")), {"mine.yaml:14", "before the state before it"});
+  expect_in(complaint(start + state("5, 6, 7") + state("40, 50, 60")), {"mine.yaml:13", "before the state before it"});
+  expect_in(complaint(start + state("0, 1, -1")), {"mine.yaml:12", "channel 2 fires in none"});
+  expect_in(complaint(start + state("0, .nan, 1")), {"mine.yaml:13", "firing_us", "finite"});
+  expect_in(complaint(start + state("0, 1, 2") + "firing_us: [0, 1, 2]\n"), {"mine.yaml:14", "stands beside states"});
+  expect_in(complaint(std::string(optics) + "elevation_deg: [0]\nazimuth_offset_cw_deg: [0]\ntiming: encoder\n" +
+                      "modes: [512x10]\nstates:\n" + state("0")),
+            {"states", "belong to timing: clock"});
+}
+
+TEST_F(UserSensor, ImpossiblePrismsAreRefusedWithLineAndField) {
+  const std::string beam = "elevation_deg: [0]\nazimuth_offset_cw_deg: [0]\n", speeds = "prism_hz: [-100, 70]\n";
+  const std::string start = std::string(optics) + "timing: prism\ncycle_us: 10\n";
+  EXPECT_EQ(complaint(start + beam + speeds + "prism_wedge_deg: [18, 17]\n"), "");
+  expect_in(complaint(start + beam + speeds), {"mine.yaml", "prism_wedge_deg", "is missing"});
+  expect_in(complaint(start + beam + speeds + "prism_wedge_deg: [18]\n"),
+            {"mine.yaml:13", "prism_wedge_deg", "has 1 values", "two wedges"});
+  expect_in(complaint(start + beam + speeds + "prism_wedge_deg: [55, 55]\n"),
+            {"mine.yaml:13", "prism_wedge_deg", "let no light out", "0 degrees apart"});
+  expect_in(complaint(start + beam + speeds + "prism_wedge_deg: [90, 5]\n"), {"mine.yaml:13", "below 60"});
+  expect_in(complaint(start + "elevation_deg: [0, 1]\nazimuth_offset_cw_deg: [0, 0]\n" + speeds +
+                      "prism_wedge_deg: [18, 17]\n"),
+            {"mine.yaml:10", "elevation_deg", "one channel"});
+  expect_in(complaint(std::string(optics) + clock_timing + beam + speeds), {"timing", "clock", "wedges belong"});
 }
 
 TEST_F(UserSensor, MalformedTablesAreRefusedWithFileLineAndColumn) {

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "core/error.h"
+#include "tests/sim/truth/hill.h"
 #include "tests/sim/truth/stand_turn.h"
 #include "tests/support/numeric.h"
 #include "tests/support/numeric_jet.h"
@@ -18,18 +19,8 @@ using Eigen::Vector3d;
 using testing::AllOf;
 using testing::HasSubstr;
 using tests::derivative_of;
+using tests::Hill;
 using tests::stand_turn;
-
-/// A gentle hill, so that slopes, their turning under the vehicle, and curvature all take part.
-class Hill final : public scenes::Ground {
- public:
-  double height_m(double x, double y, Eigen::Vector2d* g, Eigen::Vector3d* H) const override {
-    const double sx = std::sin(x / 30), cx = std::cos(x / 30), sy = std::sin(y / 20), cy = std::cos(y / 20);
-    if (g) *g << 0.4 * cx * cy / 30, -0.4 * sx * sy / 20;
-    if (H) *H << -0.4 * sx * cy / 900, -0.4 * cx * sy / 600, -0.4 * sx * cy / 400;
-    return 0.4 * sx * cy;
-  }
-};
 
 /// z = 0.015 x - 0.008 y + 2.
 class Slope final : public scenes::Ground {

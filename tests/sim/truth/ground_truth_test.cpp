@@ -135,7 +135,70 @@ TEST_F(TruthFolder, LabelsComeBackPerSweep) {
   EXPECT_EQ(got[0].moving, labels.moving);
   EXPECT_EQ(got[0].t_ns, labels.t_ns);
   EXPECT_EQ(got[0].time(1), labels.end);
+  EXPECT_EQ(got[0].kind, std::vector(2, ReturnKind::surface));
+  EXPECT_FALSE(got[0].has_point_truth());
   EXPECT_TRUE(got[1].label.empty());
+}
+
+PointLabels labels_with_all_columns() {
+  PointLabels labels;
+  labels.label = {scenes::Label::glass, scenes::Label::building, scenes::Label::none};
+  labels.instance = {7, 8, PointLabels::no_instance};
+  labels.moving = {0, 0, 0};
+  labels.t_ns = {0, 1, 2};
+  labels.kind = {ReturnKind::dirt, ReturnKind::ghost, ReturnKind::noise};
+  labels.true_range_m = {1.5, 1.0 / 3, 7e-9};
+  labels.normal_x = {1, 0, 0};
+  labels.normal_y = {0, 1, 0};
+  labels.normal_z = {0, 0, 0.25f};
+  labels.cos_incidence = {0.5f, 1, 0.125f};
+  return labels;
+}
+
+TEST(PointLabels, EveryColumnComesBackBitForBit) {
+  const PointLabels labels = labels_with_all_columns(), got = labels_from_chunk(to_chunk(labels));
+  EXPECT_EQ(got.kind, labels.kind);
+  EXPECT_EQ(got.true_range_m, labels.true_range_m);
+  EXPECT_EQ(got.normal_x, labels.normal_x);
+  EXPECT_EQ(got.normal_y, labels.normal_y);
+  EXPECT_EQ(got.normal_z, labels.normal_z);
+  EXPECT_EQ(got.cos_incidence, labels.cos_incidence);
+}
+
+TEST(PointLabels, FilesFromBeforeKindsExistedHoldSurfacesOnly) {
+  ChunkData chunk;
+  chunk.add(std::span<const std::uint8_t>(std::vector<std::uint8_t>{1, 10}));
+  chunk.add(std::span<const std::uint32_t>(std::vector<std::uint32_t>{3, 4}));
+  chunk.add(std::span<const std::uint8_t>(std::vector<std::uint8_t>{0, 1}));
+  chunk.add(std::span<const std::int32_t>(std::vector<std::int32_t>{5, 6}));
+  chunk.add_value(std::int64_t{1});
+  chunk.add_value(std::int64_t{2});
+  const PointLabels got = labels_from_chunk(chunk);
+  ASSERT_EQ(got.label.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(got.kind_of(i), ReturnKind::surface);
+  EXPECT_FALSE(got.has_point_truth());
+}
+
+TEST(PointLabels, KeepsTheSamePointsOfEveryColumnThatThereIs) {
+  PointLabels labels = labels_with_all_columns();
+  labels.keep_only({0, 2});
+  EXPECT_EQ(labels.kind, (std::vector{ReturnKind::dirt, ReturnKind::noise}));
+  EXPECT_EQ(labels.true_range_m, (std::vector{1.5, 7e-9}));
+  EXPECT_EQ(labels.cos_incidence, (std::vector{0.5f, 0.125f}));
+  PointLabels plain;
+  plain.label = {scenes::Label::glass, scenes::Label::building};
+  plain.keep_only({1});
+  EXPECT_EQ(plain.label, std::vector{scenes::Label::building});
+  EXPECT_TRUE(plain.kind.empty());
+}
+
+TEST(PointLabels, ColumnsOfUnequalLengthAndKindsThatAreNoneAreRefused) {
+  PointLabels labels = labels_with_all_columns();
+  labels.true_range_m.pop_back();
+  EXPECT_THROW(labels_from_chunk(to_chunk(labels)), DamagedFile);
+  labels = labels_with_all_columns();
+  labels.kind[1] = static_cast<ReturnKind>(200);
+  EXPECT_THROW(labels_from_chunk(to_chunk(labels)), DamagedFile);
 }
 
 TEST_F(TruthFolder, MissingLabelsAreAnErrorThatSaysSo) {

@@ -66,7 +66,7 @@ TEST(MotionKinds, ResolvedTextMakesTheSameMotionAndResolvesToItself) {
 }
 
 TEST(MotionKinds, EveryKindHasOptionsAndAFunctionClass) {
-  ASSERT_EQ(motion_kinds().size(), 4u);
+  ASSERT_EQ(motion_kinds().size(), 8u);
   for (const std::string& kind : motion_kinds()) {
     EXPECT_FALSE(describe_motion(kind).empty()) << kind;
     EXPECT_FALSE(motion_function_class(kind).empty()) << kind;

@@ -2,8 +2,8 @@
 
 namespace tarmac::tests {
 
-core::ConfigNode stand_turn_motion() {
-  return core::ConfigNode::load(TARMAC_SCENARIOS "/stand-turn.yaml").child("motion");
+core::ConfigNode shipped_motion(const std::string& scenario) {
+  return core::ConfigNode::load(TARMAC_SCENARIOS "/" + scenario + ".yaml").child("motion");
 }
 
 }  // namespace tarmac::tests

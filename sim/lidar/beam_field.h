@@ -1,0 +1,64 @@
+/// What all beams of a sweep met, as arrays over its firings.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sim/lidar/echo_train.h"
+#include "sim/raycast/tracer.h"
+
+namespace tarmac::sim::lidar {
+
+/// What the centre rays met.
+struct CentreField {
+  std::vector<double> t_m;        ///< relief included; 0 where nothing was met
+  std::vector<float> relief_m;    ///< of that
+  std::vector<float> x, y, z;     ///< where the macro surface was met, from the tracer's base, world axes [m]
+  std::vector<float> nx, ny, nz;  ///< its normal
+  std::vector<float> facing;      ///< cosine of incidence on the macro surface
+  std::vector<float> cos_incidence;
+  std::vector<std::uint32_t> instance;
+  std::vector<std::uint16_t> material;  ///< 0 where nothing was met
+  std::size_t size() const { return t_m.size(); }
+  void resize(std::size_t n);
+  /// Puts a batch's hits in at `first`.
+  void keep(std::size_t first, const raycast::Rays& rays, const raycast::Hits& hits);
+};
+
+/// The echoes of every firing: the strongest one in arrays, the others in a list.
+struct EchoField {
+  std::vector<double> t_m;  ///< 0: no echo
+  std::vector<float> signal, cos_incidence, nx, ny, nz;
+  std::vector<std::uint32_t> instance;
+  std::vector<ReturnKind> kind;
+  struct Other {
+    std::uint32_t firing, slot;  ///< slot: 1, 2, ... in the order of strength
+    Echo echo;
+  };
+  std::vector<Other> others;  ///< by firing, then by slot
+  std::size_t size() const { return t_m.size(); }
+  void resize(std::size_t n);
+  void put(std::size_t firing, const Echo& echo);
+  Echo at(std::size_t firing) const;
+};
+
+/// Whether a beam and its four neighbours lie on one plane, so that nothing can end inside its footprint that is wider
+/// than the way to the neighbours.
+class Neighbours {
+ public:
+  /// Offsets by channel: the next cycle's, and the beam above (none where there is none).
+  void set(std::size_t channels, const std::vector<std::int64_t>& above_cycles,
+           const std::vector<std::int32_t>& above_channel);
+  /// settled[i]: firing i and its neighbours met one plane, or all met nothing. Firings on a material that
+  /// `unsettled_material` marks, and those whose neighbours lie beyond the sweep, never are.
+  void settle(const CentreField& field, const std::vector<std::uint8_t>& unsettled_material,
+              std::vector<std::uint8_t>& settled) const;
+
+ private:
+  std::size_t channels_ = 1;
+  std::vector<std::int64_t> above_cycles_;
+  std::vector<std::int32_t> above_channel_;
+};
+
+}  // namespace tarmac::sim::lidar

@@ -1,0 +1,309 @@
+#include "sim/raycast/movers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/vector_loop.h"
+
+namespace tarmac::sim::raycast {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t tile = SweepTracer::tile;
+// Within this time poses are taken as moving in a straight line: a T^2 / 8 is 6 micrometres at 2 m/s^2. It decides
+// which triangle is met; where on it is computed from the pose itself.
+constexpr double straight_ns = 5e6;
+constexpr float around_bounds_m = 2e-3f;
+
+float wrapped(float diamond) {
+  return diamond >= 2 ? diamond - 4 : diamond < -2 ? diamond + 4 : diamond;
+}
+
+/// A pose of every lane: row by row R, then p.
+struct LaneFrames {
+  alignas(64) double row[12][tile];
+};
+
+void set_lane(LaneFrames& frames, std::size_t lane, const Frame& frame) {
+  for (int k = 0; k < 9; ++k) frames.row[k][lane] = frame.R(k / 3, k % 3);
+  for (int k = 0; k < 3; ++k) frames.row[9 + k][lane] = frame.p[k];
+}
+
+struct Entries {
+  double value[12];
+};
+
+Entries entries_of(const Frame& frame) {
+  Entries e;
+  for (int k = 0; k < 9; ++k) e.value[k] = frame.R(k / 3, k % 3);
+  for (int k = 0; k < 3; ++k) e.value[9 + k] = frame.p[k];
+  return e;
+}
+
+TARMAC_VECTOR_LOOP void blend(const double* __restrict first, const double* __restrict change,
+                              const double* __restrict share, double (*__restrict row)[tile]) {
+  for (int k = 0; k < 12; ++k)
+    for (std::size_t lane = 0; lane < tile; ++lane) row[k][lane] = first[k] + share[lane] * change[k];
+}
+
+struct LaneRays {
+  alignas(64) double ox[tile], oy[tile], oz[tile], dx[tile], dy[tile], dz[tile];
+};
+
+/// R^T (o - p) and R^T d.
+TARMAC_VECTOR_LOOP void turn_rays(const LaneRays& world, const double (*__restrict f)[tile], RTCRay16& local) {
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < tile; ++k) {
+    const double x = world.ox[k] - f[9][k], y = world.oy[k] - f[10][k], z = world.oz[k] - f[11][k];
+    local.org_x[k] = static_cast<float>(f[0][k] * x + f[3][k] * y + f[6][k] * z);
+    local.org_y[k] = static_cast<float>(f[1][k] * x + f[4][k] * y + f[7][k] * z);
+    local.org_z[k] = static_cast<float>(f[2][k] * x + f[5][k] * y + f[8][k] * z);
+    const double dx = world.dx[k], dy = world.dy[k], dz = world.dz[k];
+    local.dir_x[k] = static_cast<float>(f[0][k] * dx + f[3][k] * dy + f[6][k] * dz);
+    local.dir_y[k] = static_cast<float>(f[1][k] * dx + f[4][k] * dy + f[7][k] * dz);
+    local.dir_z[k] = static_cast<float>(f[2][k] * dx + f[5][k] * dy + f[8][k] * dz);
+  }
+}
+
+/// Slabs: where each ray is inside all three pairs of planes.
+TARMAC_VECTOR_LOOP void meet_bounds(const RTCRay16& ray, const float* __restrict low, const float* __restrict high,
+                                    int* __restrict valid) {
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < tile; ++k) {
+    constexpr float least = 1e-12f;
+    const float dx = ray.dir_x[k], dy = ray.dir_y[k], dz = ray.dir_z[k];
+    const float ix = 1.0f / ((dx < 0 ? -dx : dx) < least ? least : dx);
+    const float iy = 1.0f / ((dy < 0 ? -dy : dy) < least ? least : dy);
+    const float iz = 1.0f / ((dz < 0 ? -dz : dz) < least ? least : dz);
+    const float x0 = (low[0] - ray.org_x[k]) * ix, x1 = (high[0] - ray.org_x[k]) * ix;
+    const float y0 = (low[1] - ray.org_y[k]) * iy, y1 = (high[1] - ray.org_y[k]) * iy;
+    const float z0 = (low[2] - ray.org_z[k]) * iz, z1 = (high[2] - ray.org_z[k]) * iz;
+    const float xn = x0 < x1 ? x0 : x1, xf = x0 < x1 ? x1 : x0;
+    const float yn = y0 < y1 ? y0 : y1, yf = y0 < y1 ? y1 : y0;
+    const float zn = z0 < z1 ? z0 : z1, zf = z0 < z1 ? z1 : z0;
+    float in = xn > yn ? xn : yn, out = xf < yf ? xf : yf;
+    in = in > zn ? in : zn;
+    out = out < zf ? out : zf;
+    in = in > 0.0f ? in : 0.0f;
+    out = out < ray.tfar[k] ? out : ray.tfar[k];
+    valid[k] = in <= out ? valid[k] : 0;
+  }
+}
+
+}  // namespace
+
+Bounds bounds_of(const scenes::Mesh& mesh) {
+  if (mesh.vertices.empty()) return {};
+  Bounds b{mesh.vertices.front(), mesh.vertices.front()};
+  for (const Eigen::Vector3f& v : mesh.vertices) {
+    b.low = b.low.cwiseMin(v);
+    b.high = b.high.cwiseMax(v);
+  }
+  b.low.array() -= around_bounds_m;
+  b.high.array() += around_bounds_m;
+  return b;
+}
+
+float diamond_angle(float x, float y) {
+  const float size = std::abs(x) + std::abs(y);
+  if (size == 0) return 0;
+  const float a = y / size;
+  return x < 0 ? 2 - a : a < 0 ? 4 + a : a;
+}
+
+bool Shade::covers(const TileView& view) const {
+  if (view.z_low > z_high || view.z_high < z_low) return false;
+  if (all_round) return true;
+  const float apart = wrapped(view.angle - angle);
+  const float low = apart + view.angle_low, high = apart + view.angle_high;
+  // Both ranges may reach round the back.
+  return (low <= angle_high && high >= angle_low) || (low - 4 <= angle_high && high - 4 >= angle_low) ||
+         (low + 4 <= angle_high && high + 4 >= angle_low);
+}
+
+namespace {
+
+/// Corners of the bounds at one time, seen from the batch's centre.
+struct Corners {
+  std::array<Vector3d, 8> at;
+};
+
+Corners corners_of(const Bounds& bounds, const Frame& frame, const Vector3d& from) {
+  Corners corners;
+  for (int k = 0; k < 8; ++k) {
+    const Eigen::Vector3f c(k & 1 ? bounds.high.x() : bounds.low.x(), k & 2 ? bounds.high.y() : bounds.low.y(),
+                            k & 4 ? bounds.high.z() : bounds.low.z());
+    corners.at[static_cast<std::size_t>(k)] = frame.R * c.cast<double>() + frame.p - from;
+  }
+  return corners;
+}
+
+/// Least horizontal distance of the bounds from the batch's centre, not above the true one: along the line to their
+/// middle, and along their own axes.
+double horizontal_distance(const Corners& corners, const Frame& frame) {
+  Vector3d middle = Vector3d::Zero();
+  for (const Vector3d& c : corners.at) middle += c / 8;
+  double distance = 0;
+  for (Eigen::Vector2d axis : {Eigen::Vector2d(middle.head<2>()), Eigen::Vector2d(frame.R.col(0).head<2>()),
+                               Eigen::Vector2d(frame.R.col(1).head<2>())}) {
+    const double length = axis.norm();
+    if (length < 1e-9) continue;
+    axis /= length;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vector3d& c : corners.at) {
+      low = std::min(low, axis.dot(c.head<2>()));
+      high = std::max(high, axis.dot(c.head<2>()));
+    }
+    distance = std::max({distance, low, -high});
+  }
+  return distance;
+}
+
+/// What the part hides at one time; `spare_m` is added on all sides.
+Shade shade_at(const Corners& corners, double distance_m, double spare_m) {
+  Shade shade;
+  double top = -std::numeric_limits<double>::infinity(), bottom = -top, farthest = 0;
+  Vector3d middle = Vector3d::Zero();
+  for (const Vector3d& c : corners.at) {
+    top = std::max(top, c.z() + spare_m);
+    bottom = std::min(bottom, c.z() - spare_m);
+    farthest = std::max(farthest, c.head<2>().norm() + spare_m);
+    middle += c / 8;
+  }
+  const double near = distance_m - spare_m;
+  shade.nearest_m = static_cast<float>(std::max(0.0, near));
+  const auto slope = [](double z, double r) { return static_cast<float>(z / std::hypot(z, r)); };
+  constexpr float rounding = 1e-5f;
+  if (near < 0.05) {  // the rays start above, below or within it
+    shade.all_round = true;
+    shade.z_high = top > 0 ? 1 : slope(top, farthest) + rounding;
+    shade.z_low = bottom < 0 ? -1 : slope(bottom, farthest) - rounding;
+    return shade;
+  }
+  shade.z_high = slope(top, top > 0 ? near : farthest) + rounding;
+  shade.z_low = slope(bottom, bottom < 0 ? near : farthest) - rounding;
+  shade.angle = diamond_angle(static_cast<float>(middle.x()), static_cast<float>(middle.y()));
+  // A turn of an angle turns the diamond angle by as much, or less.
+  const auto spread = static_cast<float>(std::asin(std::min(1.0, spare_m / distance_m))) + rounding;
+  for (const Vector3d& c : corners.at) {
+    const float apart = wrapped(diamond_angle(static_cast<float>(c.x()), static_cast<float>(c.y())) - shade.angle);
+    shade.angle_low = std::min(shade.angle_low, apart - spread);
+    shade.angle_high = std::max(shade.angle_high, apart + spread);
+  }
+  return shade;
+}
+
+}  // namespace
+
+void cast_shades(const std::vector<MovingPart>& parts, const BatchBounds& batch, double reach_m,
+                 std::vector<Shade>& shades) {
+  shades.clear();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const MovingPart& part = parts[i];
+    // As it is at the middle of the batch's time, with what it moves until its ends as spare.
+    const Frame frame = part.track.at(0.5 * (batch.t_first_ns + batch.t_last_ns));
+    double spare_m = batch.radius_m;
+    const Corners corners = corners_of(part.bounds, frame, batch.centre_m);
+    if (!part.track.still()) {
+      double moved_m = 0;
+      for (const double t_ns : {batch.t_first_ns, batch.t_last_ns}) {
+        const Corners then = corners_of(part.bounds, part.track.at(t_ns), batch.centre_m);
+        for (std::size_t k = 0; k < 8; ++k) moved_m = std::max(moved_m, (then.at[k] - corners.at[k]).norm());
+      }
+      // Between the middle and an end nothing is farther off the straight way than the bow of its acceleration; twice
+      // that, since corners of the bounds may lie outside of the actor's sphere.
+      const double half_s = 0.5e-9 * (batch.t_last_ns - batch.t_first_ns);
+      spare_m += moved_m + 2 * part.acceleration_m_s2 * half_s * half_s / 8 + 1e-3;
+    }
+    Shade shade = shade_at(corners, horizontal_distance(corners, frame), spare_m);
+    if (static_cast<double>(shade.nearest_m) > reach_m) continue;
+    shade.part = static_cast<std::uint32_t>(i);
+    shades.push_back(shade);
+  }
+}
+
+namespace {
+TARMAC_VECTOR_LOOP void diamond_angles(const float* __restrict x, const float* __restrict y, float* __restrict angle) {
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < tile; ++k) {
+    const float size = (x[k] < 0 ? -x[k] : x[k]) + (y[k] < 0 ? -y[k] : y[k]);
+    const float a = y[k] / (size > 0 ? size : 1.0f);
+    angle[k] = x[k] < 0 ? 2.0f - a : (a < 0 ? 4.0f + a : a);
+  }
+}
+}  // namespace
+
+TileView view_of(const RTCRay16& packed, const int* valid, const Rays& rays, const std::uint32_t* lanes) {
+  alignas(64) float angles[tile];
+  diamond_angles(packed.dir_x, packed.dir_y, angles);
+  TileView view;
+  bool first = true;
+  std::int32_t t_first = 0, t_last = 0;
+  for (std::size_t lane = 0; lane < tile; ++lane) {
+    if (valid[lane] == 0) continue;
+    const float z = packed.dir_z[lane];
+    const std::int32_t t = rays.t_ns[lanes[lane]];
+    if (first) {
+      view = {0, 0, angles[lane], 0, 0, z, z};
+      t_first = t_last = t;
+      first = false;
+      continue;
+    }
+    const float apart = wrapped(angles[lane] - view.angle);
+    view.angle_low = std::min(view.angle_low, apart);
+    view.angle_high = std::max(view.angle_high, apart);
+    view.z_low = std::min(view.z_low, z);
+    view.z_high = std::max(view.z_high, z);
+    t_first = std::min(t_first, t);
+    t_last = std::max(t_last, t);
+  }
+  view.t_first_ns = t_first;
+  view.t_last_ns = t_last;
+  return view;
+}
+
+bool to_part(const MovingPart& part, const TileView& view, const Vector3d& base, const Rays& rays,
+             const std::uint32_t* lanes, const RTCRayHit16& world, RTCRayHit16& local, int* valid) {
+  LaneFrames frames;
+  const double span_ns = view.t_last_ns - view.t_first_ns;
+  alignas(64) double share[tile] = {};
+  LaneRays ray;
+  std::uint32_t used = lanes[0];
+  for (std::size_t lane = 0; lane < tile; ++lane) {
+    const std::uint32_t i = lanes[lane] == SweepTracer::no_ray ? used : lanes[lane];
+    used = i;
+    ray.ox[lane] = base.x() + rays.ox[i], ray.oy[lane] = base.y() + rays.oy[i], ray.oz[lane] = base.z() + rays.oz[i];
+    ray.dx[lane] = rays.dx[i], ray.dy[lane] = rays.dy[i], ray.dz[lane] = rays.dz[i];
+    share[lane] = span_ns > 0 ? (rays.t_ns[i] - view.t_first_ns) / span_ns : 0;
+  }
+  if (part.track.still() || span_ns <= straight_ns) {
+    const Entries first = entries_of(part.track.at(view.t_first_ns));
+    Entries change{};
+    if (!part.track.still() && span_ns > 0) {
+      const Entries last = entries_of(part.track.at(view.t_last_ns));
+      for (int k = 0; k < 12; ++k) change.value[k] = last.value[k] - first.value[k];
+    }
+    blend(first.value, change.value, share, frames.row);
+  } else {
+    for (std::size_t lane = 0; lane < tile; ++lane)
+      set_lane(frames, lane, part.track.at(view.t_first_ns + share[lane] * span_ns));
+  }
+  turn_rays(ray, frames.row, local.ray);
+  std::copy_n(world.ray.tfar, tile, local.ray.tfar);
+  meet_bounds(local.ray, part.bounds.low.data(), part.bounds.high.data(), valid);
+  int any = 0;
+  for (std::size_t lane = 0; lane < tile; ++lane) any |= valid[lane];
+  if (any == 0) return false;
+  std::fill_n(local.ray.tnear, tile, 0.0f);
+  std::fill_n(local.ray.time, tile, 0.0f);
+  std::fill_n(local.ray.mask, tile, ~0u);
+  std::fill_n(local.ray.id, tile, 0u);
+  std::fill_n(local.ray.flags, tile, 0u);
+  std::fill_n(local.hit.geomID, tile, RTC_INVALID_GEOMETRY_ID);
+  std::fill_n(local.hit.instID[0], tile, RTC_INVALID_GEOMETRY_ID);
+  return true;
+}
+
+}  // namespace tarmac::sim::raycast

@@ -1,0 +1,176 @@
+#include "sim/truth/train.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scenes/paths/quadrature.h"
+
+namespace tarmac::sim::truth {
+
+namespace {
+
+constexpr double largest_fold_rad = 80 * std::numbers::pi / 180;
+constexpr double certified_rad = 1e-10;
+
+/// Butcher's matrix of Gauss-Legendre collocation with three stages.
+struct Gauss6 {
+  std::array<std::array<double, 3>, 3> a;
+  Gauss6() {
+    const double r = std::sqrt(15.0);
+    a = {{{5.0 / 36, 2.0 / 9 - r / 15, 5.0 / 36 - r / 30},
+          {5.0 / 36 + r / 24, 2.0 / 9, 5.0 / 36 - r / 24},
+          {5.0 / 36 + r / 30, 2.0 / 9 + r / 15, 5.0 / 36}}};
+  }
+};
+const Gauss6 gauss;
+
+/// The polynomial of degree 7 on [0, 1] with these values and derivatives by s at both ends.
+std::array<double, 8> hermite(const Jet& a, const Jet& b, double h) {
+  using Real = long double;
+  const Real c0 = a.f, c1 = h * a.d1, c2 = h * h * a.d2 / 2, c3 = h * h * h * a.d3 / 6;
+  const Real e0 = b.f - (c0 + c1 + c2 + c3), e1 = h * b.d1 - (c1 + 2 * c2 + 3 * c3);
+  const Real e2 = h * h * b.d2 - (2 * c2 + 6 * c3), e3 = h * h * h * b.d3 - 6 * c3;
+  const Real c4 = 35 * e0 - 15 * e1 + 2.5L * e2 - e3 / 6, c5 = -84 * e0 + 39 * e1 - 7 * e2 + e3 / 2;
+  const Real c6 = 70 * e0 - 34 * e1 + 6.5L * e2 - e3 / 2, c7 = -20 * e0 + 10 * e1 - 2 * e2 + e3 / 6;
+  const auto d = [](Real x) { return static_cast<double>(x); };
+  return {d(c0), d(c1), d(c2), d(c3), d(c4), d(c5), d(c6), d(c7)};
+}
+
+}  // namespace
+
+Train::Train(const std::vector<Link>& links, const std::function<Jet(double)>& heading, double s_max_m,
+             Problem& problem)
+    : links_(links) {
+  const auto count = static_cast<std::size_t>(std::ceil(std::max(0.0, s_max_m) / node_spacing_m)) + 1;
+  const std::vector<Angles> coarse = solve(heading, node_spacing_m, count);
+  const std::vector<Angles> fine = solve(heading, node_spacing_m / 2, 2 * count);
+  std::vector<std::array<Jet, max_links>> nodes;
+  for (std::size_t k = 0; k <= count; ++k) {
+    const double s_m = static_cast<double>(k) * node_spacing_m;
+    const Jet tug = heading(s_m);
+    double before = tug.f;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      certificate_rad_ = std::max(certificate_rad_, std::abs(fine[2 * k][i] - coarse[k][i]));
+      const double fold = std::abs(before - fine[2 * k][i]);
+      if (fold > largest_fold_rad && problem.message.empty()) {
+        problem = {s_m,
+                   fmt::format("link {} folds by {:.0f} deg at {:.1f} m along the tug's path (more than 80 deg: it "
+                               "jack-knifes): wider turns, or shorter links",
+                               i + 1, fold * 180 / std::numbers::pi, s_m)};
+      }
+      before = fine[2 * k][i];
+    }
+    nodes.push_back(complete(tug, fine[2 * k]));
+  }
+  if (certificate_rad_ > certified_rad && problem.message.empty()) {
+    problem = {0,
+               fmt::format("the train's equations are solved only to {:.1e} rad on this path: turns are too sudden for "
+                           "links this short; lengthen blend_m or the links",
+                           certificate_rad_)};
+  }
+  intervals_.resize(count);
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      intervals_[k][i] = hermite(nodes[k][i], nodes[k + 1][i], node_spacing_m);
+}
+
+Train::Angles Train::slopes(const Jet& tug, const Angles& theta) const {
+  Angles slope{};
+  double psi = tug.f, turn = tug.d1, v = 1;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const auto [a, L] = links_[i];
+    const double s = std::sin(psi - theta[i]), c = std::cos(psi - theta[i]);
+    slope[i] = (v * s - a * turn * c) / L;
+    v = v * c + a * turn * s;
+    psi = theta[i], turn = slope[i];
+  }
+  return slope;
+}
+
+std::vector<Train::Angles> Train::solve(const std::function<Jet(double)>& heading, double step_m,
+                                        std::size_t steps) const {
+  Angles theta;
+  theta.fill(heading(0).f);
+  std::vector<Angles> result{theta};
+  result.reserve(steps + 1);
+  for (std::size_t k = 0; k < steps; ++k) {
+    std::array<Jet, 3> tug;
+    std::array<Angles, 3> slope;
+    for (int j = 0; j < 3; ++j) {
+      tug[j] = heading((static_cast<double>(k) + scenes::Gauss3::node[j]) * step_m);
+      slope[j] = slopes(tug[j], theta);
+    }
+    // Each round gains a factor of step / length: a dozen leave nothing but rounding.
+    for (int round = 0; round < 12; ++round) {
+      for (int j = 0; j < 3; ++j) {
+        Angles stage = theta;
+        for (std::size_t i = 0; i < links_.size(); ++i)
+          for (int l = 0; l < 3; ++l) stage[i] += step_m * gauss.a[j][l] * slope[l][i];
+        slope[j] = slopes(tug[j], stage);
+      }
+    }
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      for (int j = 0; j < 3; ++j) theta[i] += step_m * scenes::Gauss3::weight[j] * slope[j][i];
+    result.push_back(theta);
+  }
+  return result;
+}
+
+std::array<Jet, Train::max_links> Train::complete(const Jet& tug, const Angles& theta) const {
+  std::array<Jet, max_links> jets{};
+  Jet psi = tug, v{1};
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const auto [a, L] = links_[i];
+    Jet& angle = jets[i];
+    angle.f = theta[i];
+    const Jet turn = derivative(psi);
+    SinCos fold;
+    // Each pass gives one derivative more.
+    for (int pass = 0; pass < 3; ++pass) {
+      fold = sin_cos(psi - angle);
+      const Jet slope = (1 / L) * (v * fold.sin - a * (turn * fold.cos));
+      angle.d1 = slope.f;
+      if (pass > 0) angle.d2 = slope.d1;
+      if (pass > 1) angle.d3 = slope.d2;
+    }
+    fold = sin_cos(psi - angle);
+    v = v * fold.cos + a * (turn * fold.sin);
+    psi = angle;
+  }
+  return jets;
+}
+
+std::array<Jet, Train::max_links> Train::headings(double s_m) const {
+  const auto wanted = static_cast<std::size_t>(std::max(0.0, s_m / node_spacing_m));
+  const std::size_t k = std::min(wanted, intervals_.size() - 1);
+  const double x = s_m / node_spacing_m - static_cast<double>(k);
+  constexpr double r = 1 / node_spacing_m;
+  std::array<Jet, max_links> result{};
+  for (std::size_t link = 0; link < links_.size(); ++link) {
+    const Polynomial& c = intervals_[k][link];
+    double f = 0, d1 = 0, d2 = 0, d3 = 0;  // d2 and d3 are collected divided by 2 and 6
+    for (int i = 7; i >= 0; --i) {
+      d3 = d3 * x + d2;
+      d2 = d2 * x + d1;
+      d1 = d1 * x + f;
+      f = f * x + c[static_cast<std::size_t>(i)];
+    }
+    result[link] = {f, d1 * r, 2 * d2 * r * r, 6 * d3 * r * r * r};
+  }
+  return result;
+}
+
+Jet Train::speed_ratio(const Jet& tug_heading, const std::array<Jet, max_links>& headings) const {
+  Jet psi = tug_heading, v{1};
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const SinCos fold = sin_cos(psi - headings[i]);
+    v = v * fold.cos + links_[i].hitch_m * (derivative(psi) * fold.sin);
+    psi = headings[i];
+  }
+  return v;
+}
+
+}  // namespace tarmac::sim::truth
