@@ -124,7 +124,7 @@ void paint_stand(Painter& p, const StandPaint& s) {
   bar(-3, -s.nose_gear_m - 0.08, 3, -s.nose_gear_m + 0.08);
   for (const double dy : {-3.3, -6.2}) bar(-1.5, -s.nose_gear_m + dy - 0.06, 1.5, -s.nose_gear_m + dy + 0.06);
   p.use(paint_yellow_marking).layer(1);
-  paint_number(p, s.number, f.world(1.2, -s.length_m - 16), 3, f.sign);
+  paint_number(p, s.number, f.world(1.2, -s.length_m + 1), 3, f.sign);
   paint_number(p, s.number, f.world(-0.9, -s.nose_gear_m + 1.2), 1.5, f.sign);
   const double half = s.half_width_m - 0.6, north = 3.5, south = -s.length_m - 2;
   const auto loop = [&](double w, double front, double e, double back) {

@@ -25,10 +25,11 @@ struct PavingOptions {
     v("joint_depth_mm", joint_depth_mm, "mean depth of the joint grooves", {.at_least = 0, .at_most = 20});
   }
 
-  /// Slabs from `low_m` to `high_m`, in cells of 1.25 m: within 0.5 mm of the default base, which is smooth enough.
+  /// Slabs from `low_m` (outwards to a whole number of slabs from the origin) to `high_m`, in cells of 1.25 m: within
+  /// 0.5 mm of the default base, which is smooth enough.
   PavingSpec spec(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m, const char* stream) const {
     PavingSpec spec;
-    spec.low_m = low_m;
+    spec.low_m = slab_size_m * (low_m / slab_size_m).array().floor().matrix();
     spec.high_m = high_m;
     spec.slab_size_m = slab_size_m;
     spec.crossfall_percent = crossfall_percent;

@@ -63,6 +63,14 @@ double leading_edge_m(const AircraftType& type, double y_m) {
   return type.wing.root_le_x_m + (y_m - type.wing.root_y_m) * std::tan(type.wing.le_sweep_deg * pi / 180);
 }
 
+/// Whether a loader at a hold door on the right side stands across `y_m`.
+bool loader_comes_near(const AircraftType& type, double y_m) {
+  constexpr double half_width_m = 2.4;
+  return std::ranges::any_of(type.doors, [&](const Door& door) {
+    return door.sill_m < 0 && door.side == -1 && std::abs(-door.x_m - y_m) < half_width_m;
+  });
+}
+
 bool is_wide(const AircraftType& type) {
   return type.length_m > 55;
 }
@@ -84,7 +92,10 @@ void Crew::chocks_and_cones(const AircraftType& type) {
   for (const double side : {-1.0, 1.0}) {
     cone(side * tip, tip_y);
     cone(side * 1.6, 2);
-    for (const Engine& engine : type.engines) cone(side * engine.y_m, -engine.lip_x_m + 1.5);
+    for (const Engine& engine : type.engines) {
+      const double y = -engine.lip_x_m + 1.5;
+      if (side < 0 || !loader_comes_near(type, y)) cone(side * engine.y_m, y);
+    }
   }
   cone(0, -type.length_m - 2);
 }
@@ -94,7 +105,7 @@ void Crew::hold(const AircraftType& type) {
   for (const Door& door : type.doors) {
     if (door.sill_m >= 0 || door.side != -1) continue;
     const double top = type.floor_z_m + door.sill_m - 0.05, skin = fuselage_half_width_m(type, door.x_m, top);
-    const bool wide = is_wide(type);
+    const bool wide = is_wide(type), aft = door.x_m > type.length_m / 2;
     const double half = wide ? container_loader_half_m : belt_loader_half_m, x = skin + 0.35 + half;
     loader_tail_m_ = std::max(loader_tail_m_, x + half);
     if (!comes(0.8)) continue;
@@ -103,12 +114,12 @@ void Crew::hold(const AircraftType& type) {
       put(
           "container_loader_" + std::to_string(top_cm), ground_equipment,
           [&](MeshBuilder& b) { add_container_loader(b, top); }, x, -door.x_m, pi);
-      containers(loader_tail_m_ + 4, -door.x_m - 2, 4);
+      if (aft) containers(loader_tail_m_ + 4, -door.x_m - 2, 4);
     } else {
       put(
           "belt_loader_" + std::to_string(top_cm), ground_equipment,
           [&](MeshBuilder& b) { add_belt_loader(b, std::max(1.3, top)); }, x, -door.x_m, pi);
-      if (-door.x_m < -type.length_m / 2) train(loader_tail_m_ + 3.2, -door.x_m - 1, 3);
+      if (aft) train(loader_tail_m_ + 3.2, -door.x_m - 1, 3);
     }
   }
 }

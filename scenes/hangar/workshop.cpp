@@ -52,8 +52,8 @@ void add_step_ladder(MeshBuilder& b) {
   b.use(polished_aluminium);
   constexpr double height = 2.6, foot = 0.9;
   for (const double y : {-0.35, 0.35}) {
-    add_beam(b, {foot, y, 0.0}, {0.1, y, height}, 0.06, 0.04);
-    add_beam(b, {-foot, y, 0.0}, {-0.1, y, height}, 0.06, 0.04);
+    add_beam(b, {foot, y, 0.006}, {0.1, y, height}, 0.06, 0.04);  // a slanted end reaches lower
+    add_beam(b, {-foot, y, 0.006}, {-0.1, y, height}, 0.06, 0.04);
   }
   for (int k = 1; k < 9; ++k) {
     const double z = 0.28 * k, x = foot - (foot - 0.1) * z / height;

@@ -16,7 +16,7 @@ struct RemoteStand {
 };
 
 struct RemoteLayout {
-  static constexpr double lane_width_m = 4.5, head_road_y_m = 14;
+  static constexpr double lane_width_m = 4.5, head_road_y_m = 18;
   std::vector<RemoteStand> stands;
   double west_m = 0, east_m = 0;                            ///< ends of the row
   double stand_length_m = 40;                               ///< of the longest type

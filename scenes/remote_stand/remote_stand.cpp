@@ -80,7 +80,7 @@ Scene make_remote_stand(const RemoteStandOptions& options, const RemoteLayout& l
   scene.name = "remote-stand";
   scene.materials = materials();
   scene.interest_min = {l.west_m - 18, l.tail_road_y_m - 12};
-  scene.interest_max = {l.east_m + 18, 24};
+  scene.interest_max = {l.east_m + 18, 28};
   const PavingSpec spec = paving(options, l);
   const auto ground = std::make_shared<WavyGround>(spec, seed);
   scene.ground = ground;
