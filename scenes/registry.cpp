@@ -12,8 +12,7 @@ const std::vector<std::string>& common_scene_keys() {
 
 std::vector<core::OptionDescription> describe_common_options() {
   std::vector<core::OptionDescription> options = describe_meshes();
-  const std::vector<core::OptionDescription> actors = describe_actors();
-  options.insert(options.end(), actors.begin(), actors.end());
+  options.push_back({"actors[]", "block", "", "", "what moves; kinds and their options: tarmac list actors"});
   return options;
 }
 

@@ -67,7 +67,7 @@ struct Instance {
   core::SE3 T_parent_mesh = core::SE3::Identity();  ///< parent = world, or the actor's frame
 };
 
-/// The motion of an actor in closed form: any pose, exactly, at any time.
+/// The motion of an actor, in closed form or as a certified solution: its pose at any time.
 class ActorMotion {
  public:
   virtual ~ActorMotion() = default;

@@ -201,7 +201,7 @@ std::optional<Time> meeting(const Body& a, const Body& b, const Interval& when, 
     const double acceleration = a.acceleration_m_s2(t, when.end) + b.acceleration_m_s2(t, when.end);
     double step_s = left_s;
     if (v * left_s + 0.5 * acceleration * left_s * left_s > free_m)
-      step_s = acceleration > 1e-9 ? (std::sqrt(v * v + 2 * acceleration * free_m) - v) / acceleration : free_m / v;
+      step_s = 2 * free_m / (v + std::sqrt(v * v + 2 * acceleration * free_m));
     t += std::max(core::Duration(1000), core::duration_from_s(step_s));
   }
   return std::nullopt;

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/recording.h"
+#include "sim/collisions.h"
 #include "sim/faults/fault_log.h"
 #include "sim/faults/fault_options.h"
 #include "sim/faults/imu_faults.h"
@@ -213,7 +214,8 @@ Workload workload_of(const ConfigNode& rig, Duration duration, bool point_truth)
     const auto sweeps = static_cast<std::size_t>(std::max<std::int64_t>(0, firing.sweeps_until(Time(duration))));
     work.sweeps += sweeps;
     const std::size_t rays = sweeps * static_cast<std::size_t>(firing.sweep(0).cycles) * firing.channels();
-    const double points = static_cast<double>(rays) * (options.lidars[k].beam.dual() ? 1.3 : 1);  // few have two returns
+    const double points =
+        static_cast<double>(rays) * (options.lidars[k].beam.dual() ? 1.3 : 1);  // few have two returns
     work.rays += rays;
     work.bytes += (point_bytes + (point_truth ? point_truth_bytes : 0)) * points;
   }
@@ -222,10 +224,31 @@ Workload workload_of(const ConfigNode& rig, Duration duration, bool point_truth)
   return work;
 }
 
+namespace {
+
+/// What must not be run into: the rig's body; a van where the scenario says nothing of it.
+EgoBox ego_box(const ConfigNode& rig, const lidar::BodyOptions& body) {
+  if (!rig.child("body").present()) return {};
+  if (body.kind == "none" || body.kind == "box")
+    return {body.length_m, body.width_m, body.height_m, body.rear_overhang_m};
+  Eigen::Vector3f low = Eigen::Vector3f::Zero(), high = low;
+  for (const Eigen::Vector3f& p : lidar::body_mesh(body).vertices) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Eigen::Vector3d size = (high - low).cast<double>();
+  return {size.x(), 2 * static_cast<double>(std::max(high.y(), -low.y())), static_cast<double>(high.z()),
+          static_cast<double>(-low.x())};
+}
+
+}  // namespace
+
 void check(const SimulationInput& input) {
   const Setup setup = read_setup(input);
   for (std::size_t k = 0; k < setup.rig.lidars.size(); ++k)
     sweeps_within(firing_table(setup.rig, input.seed, k), input);
+  check_collisions(*input.scene, *input.motion, ego_box(input.rig, setup.rig.body), Time(input.duration),
+                   input.scenario_name);
 }
 
 SimulationSummary simulate(const SimulationInput& input, const SimulationSettings& settings,

@@ -54,7 +54,8 @@ struct Workload {
 };
 Workload workload_of(const core::ConfigNode& rig, core::Duration duration, bool point_truth = false);
 
-/// Throws InputError when simulate() would refuse the input.
+/// Throws InputError when simulate() would refuse the input, and when something runs into something else
+/// (collisions.h).
 void check(const SimulationInput& input);
 
 /// Writes `recording_folder` (finished last) and `truth_folder`. Same input, same bytes, at any number of threads.

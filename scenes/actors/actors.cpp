@@ -284,19 +284,17 @@ std::string resolve_actors(const core::ConfigNode& scene_node) {
   return list.present() ? core::write_options(ActorList{read_actor_options(list)}, 2) : std::string();
 }
 
-std::vector<core::OptionDescription> describe_actors() {
-  std::vector<core::OptionDescription> lines;
-  for (const ActorKind& kind : actor_kinds()) {
-    ActorOptions options;
-    options.kind = kind.name;
-    if (kind.default_type != nullptr) options.type = kind.default_type;
-    for (core::OptionDescription& line : core::describe_options(options)) {
-      if (line.name == "kind") line.meaning = kind.summary;
-      line.name = fmt::format("actors[kind: {}].{}", kind.name, line.name);
-      lines.push_back(std::move(line));
-    }
-  }
-  return lines;
+std::vector<ActorKindSummary> actor_summaries() {
+  std::vector<ActorKindSummary> summaries;
+  for (const ActorKind& kind : actor_kinds()) summaries.push_back({kind.name, kind.summary});
+  return summaries;
+}
+
+std::vector<core::OptionDescription> describe_actor(const std::string& kind) {
+  ActorOptions options;
+  options.kind = actor_kind(kind).name;
+  if (actor_kind(kind).default_type != nullptr) options.type = actor_kind(kind).default_type;
+  return core::describe_options(options);
 }
 
 }  // namespace tarmac::scenes

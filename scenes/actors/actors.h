@@ -15,7 +15,13 @@ namespace tarmac::scenes {
 void add_actors(const core::ConfigNode& scene_node, Scene& scene);
 /// The list with every option written out, indented by 2; empty when there is none.
 std::string resolve_actors(const core::ConfigNode& scene_node);
-/// Options of each kind: "actors[kind: bus].start.x_m".
-std::vector<core::OptionDescription> describe_actors();
+
+/// What `tarmac list actors` and `tarmac describe actor KIND` show.
+struct ActorKindSummary {
+  std::string name, summary;
+};
+std::vector<ActorKindSummary> actor_summaries();
+/// Throws InputError for a kind that there is not.
+std::vector<core::OptionDescription> describe_actor(const std::string& kind);
 
 }  // namespace tarmac::scenes

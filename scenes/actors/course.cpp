@@ -120,8 +120,7 @@ SpeedProfile make_profile(const core::ConfigNode& node, const Plan& plan, double
 }
 
 /// Speeds and accelerations as asked for by the timetable's entries.
-void check_speeds(const core::ConfigNode& node, const ActorOptions& o, const SpeedProfile& profile, double length_m,
-                  const Course::Limits& limits) {
+void check_speeds(const core::ConfigNode& node, const ActorOptions& o, const Course::Limits& limits) {
   if (o.start.speed_m_s > limits.speed_m_s)
     node.child("start").fail_at(
         "speed_m_s", fmt::format("{} m/s; a {} reaches at most {} m/s", o.start.speed_m_s, o.kind, limits.speed_m_s));
@@ -137,6 +136,9 @@ void check_speeds(const core::ConfigNode& node, const ActorOptions& o, const Spe
   if (o.stop_peak_m_s2 > limits.acceleration_m_s2)
     node.fail_at("stop_peak_m_s2", fmt::format("{} m/s^2; a {} reaches at most {} m/s^2", o.stop_peak_m_s2, o.kind,
                                                limits.acceleration_m_s2));
+}
+
+void check_length(const core::ConfigNode& node, const SpeedProfile& profile, double length_m) {
   const SpeedProfile::Ramp& last = profile.ramps().back();
   if (last.end_m() > length_m + 1e-6)
     node.fail_at("speed", fmt::format("leads {:.2f} m along a path of {:.2f} m: lengthen the path or stop earlier",
@@ -201,8 +203,9 @@ double Course::top_speed_m_s() const {
 Course make_course(const core::ConfigNode& node, const ActorOptions& options, const Course::Limits& limits) {
   const Plan plan = make_plan(node, options, limits);
   PlanarPath path = make_path(node, plan);
+  check_speeds(node, options, limits);
   SpeedProfile profile = make_profile(node, plan, path.length_m());
-  check_speeds(node, options, profile, path.length_m(), limits);
+  check_length(node, profile, path.length_m());
   Course course(std::move(path), std::move(profile));
   check_turns(node, options, course, limits);
   return course;

@@ -1,6 +1,8 @@
 #include "scenes/actors/walker.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -19,13 +21,19 @@ double gait_at(double speed_m_s) {
   return v2 / (v2 + half_gait_m_s * half_gait_m_s);
 }
 
+std::uint64_t next_id() {
+  static std::atomic<std::uint64_t> next{1};
+  return next++;
+}
+
 }  // namespace
 
 Walker::Walker(Course course, const Gesture& gesture, std::shared_ptr<const Ground> ground)
     : course_(std::move(course)),
       gesture_(gesture),
       ground_(std::move(ground)),
-      stride_m_(person_stride_m(std::max(0.1, gait_at(course_.top_speed_m_s())))) {}
+      stride_m_(person_stride_m(std::max(0.1, gait_at(course_.top_speed_m_s())))),
+      id_(next_id()) {}
 
 core::SE3 Walker::T_world_person(double t_s) const {
   const PlanarPath::Point p = course_.path().at(course_.s_m(t_s));
@@ -42,6 +50,23 @@ PersonPosture Walker::posture(double t_s) const {
     posture.wave_phase_rad = 2 * std::numbers::pi * gesture_.beckon_hz * (t_s - gesture_.from_s);
   }
   return posture;
+}
+
+const std::vector<core::SE3>& Walker::T_world_parts(double t_s) const {
+  struct Answer {
+    std::uint64_t walker = 0;
+    double t_s = 0;
+    std::vector<core::SE3> parts;
+  };
+  thread_local std::array<Answer, 16> answers;
+  thread_local std::size_t oldest = 0;
+  for (const Answer& answer : answers)
+    if (answer.walker == id_ && answer.t_s == t_s) return answer.parts;
+  Answer& answer = answers[oldest++ % answers.size()];
+  answer = {id_, t_s, person_pose(posture(t_s))};
+  const core::SE3 T_world_person = this->T_world_person(t_s);
+  for (core::SE3& T : answer.parts) T = T_world_person * T;
+  return answer.parts;
 }
 
 std::vector<Course::Span> Walker::moves() const {
@@ -64,7 +89,7 @@ WalkerPart::WalkerPart(std::shared_ptr<const Walker> walker, std::size_t part)
 }
 
 core::SE3 WalkerPart::pose(double t_s) const {
-  return walker_->T_world_person(t_s) * person_pose(walker_->posture(t_s))[part_];
+  return walker_->T_world_parts(t_s)[part_];
 }
 
 }  // namespace tarmac::scenes

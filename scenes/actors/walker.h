@@ -1,6 +1,7 @@
 /// A person on foot whose parts move with the gait.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -22,6 +23,9 @@ class Walker {
   /// Ground point between the feet; upright whatever the slope.
   core::SE3 T_world_person(double t_s) const;
   PersonPosture posture(double t_s) const;
+  /// T_world_part of every part. The last few answers are kept for each thread: a sweep asks for the same times part
+  /// after part.
+  const std::vector<core::SE3>& T_world_parts(double t_s) const;
   /// When any part of it moves.
   std::vector<Course::Span> moves() const;
 
@@ -30,6 +34,7 @@ class Walker {
   Gesture gesture_;
   std::shared_ptr<const Ground> ground_;
   double stride_m_;
+  std::uint64_t id_;  ///< no two walkers of a program have the same
 };
 
 /// One part of the person.

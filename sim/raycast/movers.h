@@ -1,53 +1,23 @@
 /// What moves, during one sweep. Private to sim/raycast.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "core/lie.h"
-#include "core/time.h"
 #include "scenes/scene.h"
+#include "sim/raycast/embree_scenes.h"
+#include "sim/raycast/pose_track.h"
 #include "sim/raycast/tracer.h"
 
 namespace tarmac::sim::raycast {
-
-struct Frame {
-  Eigen::Matrix3d R;
-  Eigen::Vector3d p;
-};
-
-inline Frame frame_of(const core::SE3& T) {
-  return {T.linear(), T.translation()};
-}
 
 /// Axis-aligned, in a mesh's frame.
 struct Bounds {
   Eigen::Vector3f low{0, 0, 0}, high{0, 0, 0};
 };
 Bounds bounds_of(const scenes::Mesh& mesh);
-
-/// Poses over a sweep from knots at equidistant times: cubics through the four nearest knots, of the position and of
-/// the quaternion. Where straight lines between the knots are within 0.2 mm (motion_steps), cubics are within
-/// micrometres.
-class PoseTrack {
- public:
-  /// One knot: it stands still.
-  PoseTrack(const std::vector<core::SE3>& knots, double span_ns);
-  Frame at(double t_ns) const;
-  bool still() const { return knots_.size() == 1; }
-
- private:
-  struct Knot {
-    Eigen::Vector3d p;
-    Eigen::Vector4d q;
-  };
-  std::vector<Knot> knots_;
-  double knots_per_ns_ = 0;
-};
 
 /// An instance that an actor carries.
 struct MovingPart {

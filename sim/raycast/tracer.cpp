@@ -129,8 +129,13 @@ Tracer::Tracer(std::shared_ptr<const scenes::Scene> scene, const TracerSettings&
   for (const scenes::Instance& instance : state_->scene->instances)
     state_->T_parent_mesh.push_back(frame_of(instance.T_parent_mesh));
   std::vector<bool> moves(state_->scene->meshes.size(), false);
-  for (const scenes::Instance& instance : state_->scene->instances)
-    if (instance.actor >= 0) moves[instance.mesh] = true;
+  state_->carried.resize(state_->scene->actors.size());
+  for (std::uint32_t i = 0; i < state_->scene->instances.size(); ++i) {
+    const scenes::Instance& instance = state_->scene->instances[i];
+    if (instance.actor < 0) continue;
+    moves[instance.mesh] = true;
+    state_->carried[static_cast<std::size_t>(instance.actor)].push_back(i);
+  }
   for (std::size_t k = 0; k < moves.size(); ++k) {
     const scenes::Mesh& mesh = state_->scene->meshes[k];
     state_->meshes.push_back(
@@ -163,14 +168,13 @@ SweepTracer Tracer::sweep(Time begin, Time end, const Eigen::Vector3d& origin_wo
     const double acceleration_m_s2 = actor.motion->acceleration_bound_m_s2(begin, end, actor.radius_m);
     const std::vector<SE3> knots = state_->knots(actor, begin, end, acceleration_m_s2);
     ++sweep.actors;
-    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    for (const std::uint32_t i : state_->carried[a]) {
       const scenes::Instance& instance = scene.instances[i];
-      if (instance.actor != static_cast<std::int32_t>(a)) continue;
       std::vector<SE3> T_world_mesh = knots;
       for (SE3& T : T_world_mesh) T = T * instance.T_parent_mesh;
       const MeshData& mesh = state_->meshes[instance.mesh];
-      sweep.parts.push_back({static_cast<std::uint32_t>(i), mesh.scene.get(), mesh.bounds,
-                             PoseTrack(T_world_mesh, sweep.span_ns), acceleration_m_s2});
+      sweep.parts.push_back(
+          {i, mesh.scene.get(), mesh.bounds, PoseTrack(T_world_mesh, sweep.span_ns), acceleration_m_s2});
     }
   }
   return result;

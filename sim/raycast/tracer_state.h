@@ -37,7 +37,8 @@ struct Tracer::State {
   std::string isa;
   Device device;
   std::vector<MeshData> meshes;
-  std::vector<Frame> T_parent_mesh;  // of each instance
+  std::vector<Frame> T_parent_mesh;                 // of each instance
+  std::vector<std::vector<std::uint32_t>> carried;  // instances of each actor
   StaticTriangles still;
   std::mutex mutex;
   std::map<Cell, EmbreeScene> static_scenes;  // built when a sweep first starts in the cell, kept

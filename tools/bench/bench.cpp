@@ -16,8 +16,15 @@ struct Bench {
   const char* name;
   BenchRows (*run)(const Console& console);
 };
+BenchRows sim_and_movers(const Console& console) {
+  BenchRows rows = bench_sim(console);
+  const BenchRows movers = bench_movers(console);
+  rows.insert(rows.end(), movers.begin(), movers.end());
+  return rows;
+}
+
 constexpr Bench kBenches[] = {
-    {"sim", bench_sim}, {"estimators", bench_estimators}, {"metrics", bench_metrics}, {"store", bench_store}};
+    {"sim", sim_and_movers}, {"estimators", bench_estimators}, {"metrics", bench_metrics}, {"store", bench_store}};
 
 const Bench& find(const std::string& name) {
   std::vector<std::string> names;

@@ -21,6 +21,7 @@ using BenchRows = std::vector<BenchRow>;
 /// Each runs for some seconds to a minute and throws Interrupted after Ctrl-C.
 BenchRows bench_sim(const Console& console);
 BenchRows bench_beams(const Console& console);  ///< rows of `sim`
+BenchRows bench_movers(const Console& console);  ///< part of "sim"
 BenchRows bench_estimators(const Console& console);
 BenchRows bench_metrics(const Console& console);
 BenchRows bench_store(const Console& console);

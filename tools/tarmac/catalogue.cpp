@@ -12,6 +12,7 @@
 #include "estimators/registry.h"
 #include "metrics/registry.h"
 #include "scenarios/sweep_file.h"
+#include "scenes/actors/actors.h"
 #include "scenes/aircraft/aircraft.h"
 #include "scenes/equipment/equipment.h"
 #include "scenes/registry.h"
@@ -145,6 +146,20 @@ std::string describe_scene(const std::string& name) {
   unknown("scene", name, scene_entries());
 }
 
+std::vector<Entry> actor_entries() {
+  std::vector<Entry> entries;
+  for (const scenes::ActorKindSummary& kind : scenes::actor_summaries()) entries.push_back({kind.name, kind.summary});
+  return entries;
+}
+
+std::string describe_actor(const std::string& name) {
+  for (const Entry& entry : actor_entries())
+    if (entry.name == name)
+      return fmt::format("{}: {}\none entry of a scene's `actors:` list\n{}", name, entry.summary,
+                         options_text(scenes::describe_actor(name)));
+  unknown("actor", name, actor_entries());
+}
+
 std::vector<Entry> aircraft_entries() {
   std::vector<Entry> entries;
   for (const std::string& name : scenes::aircraft_names())
@@ -251,6 +266,7 @@ const std::vector<Kind>& kinds() {
       {"sweeps", "sweep", sweep_entries, describe_sweep},
       {"gates", "gate", gate_entries, describe_gate},
       {"scenes", "scene", scene_entries, describe_scene},
+      {"actors", "actor", actor_entries, describe_actor},
       {"aircraft", "aircraft", aircraft_entries, describe_aircraft},
       {"equipment", "equipment", equipment_entries, describe_equipment},
       {"motions", "motion", motion_entries,

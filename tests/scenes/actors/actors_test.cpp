@@ -37,9 +37,9 @@ const char* const one_of_each = R"(
   - {kind: pushback, towbar: none, tractor: towbarless-tractor, start: {x_m: 60, y_m: 12, heading_deg: 90}, path: [{straight_m: 30}], rest_s: 1, speed: [{to_m_s: 1.4, peak_m_s2: 0.3}]}
   - {kind: baggage-train, carts: 5, start: {x_m: -40, y_m: -30}, path: [{straight_m: 12}, {turn_deg: 90, radius_m: 9, blend_m: 4}, {turn_deg: -120, radius_m: 10, blend_m: 5}, {straight_m: 9}], rest_s: 1, speed: [{to_m_s: 4, peak_m_s2: 1.2}]}
   - {kind: bus, way_points: [{x_m: 0, y_m: -40}, {x_m: 60, y_m: -40}, {x_m: 60, y_m: 10}], corner_radius_m: 14, rest_s: 1, speed: [{to_m_s: 6}]}
-  - {kind: fuel-truck, start: {x_m: 0, y_m: -50, heading_deg: 30}, path: [{straight_m: 60}], rest_s: 1, speed: [{to_m_s: 7, peak_m_s2: 1.5}]}
+  - {kind: fuel-truck, start: {x_m: 0, y_m: -50, heading_deg: 30}, path: [{straight_m: 110}], rest_s: 1, speed: [{to_m_s: 6, peak_m_s2: 1.5}]}
   - {kind: belt-loader, start: {x_m: 0, y_m: -60, heading_deg: 30}, path: [{straight_m: 20}, {turn_deg: 45, radius_m: 8, blend_m: 3}], rest_s: 1, speed: [{to_m_s: 2}]}
-  - {kind: follow-me, start: {x_m: -100, y_m: -66}, path: [{straight_m: 60}, {turn_deg: 40, radius_m: 30, blend_m: 10}], rest_s: 1, speed: [{to_m_s: 8, peak_m_s2: 2}]}
+  - {kind: follow-me, start: {x_m: -100, y_m: -66}, path: [{straight_m: 90}, {turn_deg: 40, radius_m: 30, blend_m: 10}], rest_s: 1, speed: [{to_m_s: 8, peak_m_s2: 2}], stop_peak_m_s2: 2}
   - {kind: vehicle, type: baggage-tractor, way_points: [{x_m: -50, y_m: 38, at_s: 5}, {x_m: 0, y_m: 38, at_s: 15}, {x_m: 0, y_m: 38, at_s: 20}, {x_m: 30, y_m: 20, at_s: 30}]}
   - {kind: marshaller, start: {x_m: 3, y_m: 33, heading_deg: 180}, path: [{straight_m: 8}, {turn_deg: 90, radius_m: 0.8, blend_m: 0.6}, {straight_m: 4}], rest_s: 3, speed: [{to_m_s: 1.3, peak_m_s2: 0.8}], arms_raised_from_s: 16, arms_raised_until_s: 30}
   - {kind: accelerating-plane, position_m: [10, 20, 3], velocity_m_s: [1, 0, 0], acceleration_m_s2: [-0.6, 0.4, 0], size_m: [0.2, 6, 6], heading_deg: 20}
@@ -153,7 +153,9 @@ TEST(Actors, PathRoundsItsWayPointsAndEndsAtTheLast) {
   const Scene scene = cast(
       "  - {kind: bus, way_points: [{x_m: 0, y_m: 0}, {x_m: 50, y_m: 0}, {x_m: 50, y_m: 60}, {x_m: 0, y_m: 90}], "
       "corner_radius_m: 9, speed: [{to_m_s: 5, peak_m_s2: 1}]}\n");
-  const auto at = [&](double t) { return scene.actors[0].motion->T_world_actor(time_from_s(t)).translation(); };
+  const auto at = [&](double t) -> Vector3d {
+    return scene.actors[0].motion->T_world_actor(time_from_s(t)).translation();
+  };
   double nearest = 1e9;
   for (double t = 0; t < 60; t += 0.05) nearest = std::min(nearest, (at(t).head<2>() - Eigen::Vector2d(50, 0)).norm());
   EXPECT_LT(nearest, 9 * (std::sqrt(2) - 1) * 1.6) << "the corner is cut by the turn";
