@@ -142,7 +142,7 @@ Mesh make_hills_mesh(const Ground& ground, double half_size_m) {
   GridVertices grid(b, ground, half);
   for (int j = -inner; j < inner; ++j) {
     for (int i = -inner; i < inner; ++i) {
-      b.use(worn(i, j) ? MaterialId::soil : MaterialId::grass_green);
+      b.use(worn(i, j) ? MaterialId::soil : MaterialId::meadow);
       if ((i + j) % 2 == 0) {
         b.quad(grid.at(i, j), grid.at(i + 1, j), grid.at(i + 1, j + 1), grid.at(i, j + 1));
       } else {
@@ -150,7 +150,7 @@ Mesh make_hills_mesh(const Ground& ground, double half_size_m) {
       }
     }
   }
-  b.use(MaterialId::grass_green);
+  b.use(MaterialId::meadow);
   for (int j = -half; j < half; j += n) {
     for (int i = -half; i < half; i += n) {
       const bool inside = i >= -inner && i < inner && j >= -inner && j < inner;

@@ -87,7 +87,6 @@ Scene make_hills(const HillsOptions& o, std::uint64_t seed) {
   Scene scene;
   scene.name = "rough-hills";
   scene.materials = materials();
-  scene.materials[static_cast<std::size_t>(MaterialId::grass_green)].has_relief = true;  // no lawn
   scene.interest_min = {-70, -60};
   scene.interest_max = {70, 60};
   const auto ground = std::make_shared<HillyGround>(o, seed);
