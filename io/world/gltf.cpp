@@ -155,7 +155,9 @@ void check_accessor(const Json& json, const std::vector<std::uint64_t>& buffers,
   if (accessor.at("type").get<std::string>() != (vector ? "VEC3" : "SCALAR") || (vector && type != 5126)) {
     fail(vector ? "positions must be VEC3 of floats" : "indices must be SCALAR");
   }
-  if (!accessor.contains("bufferView")) fail("has no bufferView (sparse accessors are not supported)");
+  if (!accessor.contains("bufferView") || accessor.contains("sparse")) {
+    fail("is sparse or has no bufferView, which is not supported: write the file without sparse accessors");
+  }
   const auto view_index = accessor.at("bufferView").get<std::size_t>();
   const Json& views = json.at("bufferViews");
   if (view_index >= views.size()) fail(fmt::format("bufferView {} does not exist", view_index));

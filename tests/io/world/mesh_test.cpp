@@ -294,6 +294,7 @@ std::vector<Malformed> malformed() {
       {"view.gltf", with(gltf, "\"byteLength\": 48}", "\"byteLength\": 40}"), {"accessor 0", "do not fit"}},
       {"count.gltf", with(gltf, "\"count\": 12", "\"count\": 13"), {"accessor 1", "do not fit"}},
       {"offset.gltf", with(gltf, "\"byteOffset\": 48", "\"byteOffset\": 60"), {"ends beyond"}},
+      {"sparse.gltf", with(gltf, "\"count\": 4", "\"sparse\": {}, \"count\": 4"), {"accessor 0", "sparse"}},
       {"range.gltf", tests::gltf_embedded(out_of_range()), {"vertex 9", "there are 4"}},
       {"nan.gltf", tests::gltf_embedded(changed(1, nan)), {"vertex 1 (counted from 0)"}},
       {"material.gltf", with(gltf, "\"material\": 0", "\"material\": 3"), {"material 3", "there are 1"}},
