@@ -10,6 +10,12 @@ const std::vector<std::string>& common_scene_keys() {
   return keys;
 }
 
+std::vector<core::OptionDescription> describe_common_options() {
+  std::vector<core::OptionDescription> options = describe_meshes();
+  options.push_back({"actors[]", "block", "", "", "what moves; kinds and their options: tarmac list actors"});
+  return options;
+}
+
 const SceneEntry& scene_of(const core::ConfigNode& node) {
   const core::ConfigNode kind = node.child("kind");
   const std::string name = kind.scalar("kind");

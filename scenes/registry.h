@@ -35,6 +35,9 @@ Options read_scene_options(const core::ConfigNode& node) {
   return options;
 }
 
+/// The options that every kind has: `meshes:` and `actors:`.
+std::vector<core::OptionDescription> describe_common_options();
+
 /// `node` is the scenario's `scene:` block. Throws InputError (file, line, field) for unknown kinds or options.
 const SceneEntry& scene_of(const core::ConfigNode& node);
 Scene make_scene(const core::ConfigNode& node, std::uint64_t seed);

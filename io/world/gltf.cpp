@@ -250,7 +250,6 @@ Json checked_json(const std::filesystem::path& file) {
     check_nodes(document.json, file);
     roots_of(document.json, file);
   });
-  // Pictures are of no use to rays, and a missing one must not stop the geometry.
   return std::move(document.json);
 }
 
@@ -318,14 +317,35 @@ std::vector<std::filesystem::path> gltf_parts(const std::filesystem::path& file)
   return parts;
 }
 
+namespace {
+
+/// Pictures, skins and animations are of no use to rays, and a missing one must not stop the geometry; what else
+/// vertices carry has not been checked.
+void keep_positions_alone(vtkGLTFDocumentLoader::Model& model) {
+  model.Images.clear();
+  model.Textures.clear();
+  model.Skins.clear();
+  model.Animations.clear();
+  for (auto& node : model.Nodes) node.Skin = -1;
+  for (auto& mesh : model.Meshes) {
+    for (auto& primitive : mesh.Primitives) {
+      primitive.Targets.clear();
+      std::erase_if(primitive.AttributeIndices, [](const auto& entry) { return entry.first != "POSITION"; });
+    }
+  }
+}
+
+}  // namespace
+
 scenes::MeshFile read_gltf(const std::filesystem::path& file) {
   const Json json = checked_json(file);
   vtkNew<vtkGLTFDocumentLoader> loader;
   const VtkMessages messages;
   std::vector<char> chunk;
-  const bool built = loader->LoadModelMetaDataFromFile(file.string()) &&
-                     (!is_glb(file) || loader->LoadFileBuffer(file.string(), chunk)) && loader->LoadModelData(chunk) &&
-                     loader->BuildModelVTKGeometry();
+  bool built = loader->LoadModelMetaDataFromFile(file.string());
+  if (built) keep_positions_alone(*loader->GetInternalModel());
+  built = built && (!is_glb(file) || loader->LoadFileBuffer(file.string(), chunk)) && loader->LoadModelData(chunk) &&
+          loader->BuildModelVTKGeometry();
   if (!built) {
     throw core::InputError(fmt::format("{}: cannot be read: {}", file.string(), messages.first()));
   }

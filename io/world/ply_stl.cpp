@@ -114,15 +114,18 @@ std::size_t check_ply(const std::filesystem::path& file) {
   }
   const Element& face = element_of(header, "face", file);
   if (face.count == 0) throw core::InputError(fmt::format("{}: holds no triangles (element face 0)", file.string()));
-  const std::uint64_t left = std::filesystem::file_size(file) - header.size;
+  std::uint64_t left = std::filesystem::file_size(file) - header.size;
   for (const Element& element : header.elements) {
     // In text, a number takes two bytes at least: a digit and a blank.
     const std::uint64_t least = header.binary ? element.bytes : 2 * element.properties.size();
-    if (least == 0 || element.count <= left / least) continue;
-    throw core::InputError(
-        fmt::format("{}: is cut short: its header promises {} elements '{}' of at least {} bytes each, and {} bytes "
-                    "follow it",
-                    file.string(), element.count, element.name, least, left));
+    if (least == 0) continue;
+    if (element.count > left / least) {
+      throw core::InputError(
+          fmt::format("{}: is cut short: its header promises {} elements '{}' of at least {} bytes each, and {} bytes "
+                      "are left for them",
+                      file.string(), element.count, element.name, least, left));
+    }
+    left -= element.count * least;
   }
   return face.count;
 }

@@ -52,8 +52,8 @@ struct Propeller {
 
 struct Engine {
   double y_m, lip_x_m, length_m, radius_m, ground_gap_m;
-  double flat_bottom = 1;  ///< height of the cowl's lower half over its radius; below 1 it is flattened
-  Propeller propeller = {};     ///< ground_gap_m is then below the propeller's disk
+  double flat_bottom = 1;    ///< height of the cowl's lower half over its radius; below 1 it is flattened
+  Propeller propeller = {};  ///< ground_gap_m is then below the propeller's disk
 };
 
 struct Fin {

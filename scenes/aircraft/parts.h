@@ -32,6 +32,7 @@ struct FuselageShape {
   double nose_length_m, tail_length_m;
   double nose_tip = 0.34;  ///< height of the nose tip, as a share of the height
   double forehead = 0.9;   ///< exponent of the crown: larger = the crown rises later
+  double upsweep = 1.2;    ///< exponent of the belly along the tail cone: larger = it rises later
   double tail_tip = 0.75;  ///< height of the tail's end, as a share of the height
   double tail_tip_half_width_m = 0.2, tail_tip_half_height_m = 0.25;
 };

@@ -84,7 +84,7 @@ double fuselage_half_width_m(const AircraftType& type, double x_m, double z_m) {
 // Nose laws over s = x / nose length, calibrated on the measured A320 sections (crown within 6 %, belly within 6 % and
 // half width within 1.5 % of the full size): half width (1 - (1-s)^2)^0.6, belly (1 - (1-s)^2)^0.41, crown
 // (1 - (1-s)^2.4)^forehead, each growing from the nose tip's height to the constant part's. Tail laws over t, from the
-// end of the constant part to the last station: belly t^1.2, half width t^1.6, crown t^4.
+// end of the constant part to the last station: belly t^upsweep (1.2 on the A320), half width t^1.6, crown t^4.
 std::vector<FuselageStation> fuselage_stations(const FuselageShape& shape) {
   const double top = shape.top_m, bottom = shape.top_m - shape.height_m, half = shape.width_m / 2;
   const double z_nose = bottom + shape.nose_tip * shape.height_m, z_tail = bottom + shape.tail_tip * shape.height_m;
@@ -98,7 +98,7 @@ std::vector<FuselageStation> fuselage_stations(const FuselageShape& shape) {
   for (const double t : {0.0, 0.08, 0.16, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.93, 1.0}) {
     stations.push_back({shape.length_m - (1 - t) * shape.tail_length_m,
                         top + (z_tail + shape.tail_tip_half_height_m - top) * std::pow(t, 4),
-                        bottom + (z_tail - shape.tail_tip_half_height_m - bottom) * std::pow(t, 1.2),
+                        bottom + (z_tail - shape.tail_tip_half_height_m - bottom) * std::pow(t, shape.upsweep),
                         half + (shape.tail_tip_half_width_m - half) * std::pow(t, 1.6)});
   }
   return stations;

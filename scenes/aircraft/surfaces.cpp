@@ -94,8 +94,9 @@ void append_sharklet(std::vector<SpanStation>& stations, const AircraftType& typ
 /// The last metres of the span with more sweep, in the wing's own plane, down to a narrow end.
 void append_raked_tip(std::vector<SpanStation>& stations, const AircraftType& type) {
   const SpanStation tip = stations.back();
-  const double reach = type.span_m / 2 - tip.leading_edge.y(), rise = std::tan(type.wing.dihedral_deg * deg);
   const double sweep = std::tan(type.device.sweep_deg * deg), tip_chord = type.device.tip_chord_share * tip.chord_m;
+  const double rise = std::tan(type.wing.dihedral_deg * deg), leaning = -tip.up.y() * 0.5 * tip.thickness * tip_chord;
+  const double reach = type.span_m / 2 - tip.leading_edge.y() - leaning - 0.001;
   constexpr int n = 8;
   for (int k = 1; k <= n; ++k) {
     const double u = static_cast<double>(k) / n;

@@ -25,6 +25,7 @@ AircraftType atr_72() {
                                   .tail_length_m = 8.8,
                                   .nose_tip = 0.36,
                                   .forehead = 1.15,
+                                  .upsweep = 2.2,
                                   .tail_tip = 0.8,
                                   .tail_tip_half_width_m = 0.12,
                                   .tail_tip_half_height_m = 0.22});

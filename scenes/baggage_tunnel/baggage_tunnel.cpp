@@ -40,11 +40,12 @@ void sweep(MeshBuilder& b, const Site& s, const std::vector<Vector2d>& outline) 
 
 void add_floor(Assembly& a, const Site& s) {
   const BaggageTunnelLayout& l = s.l;
+  // Floors that meet lap over each other by 20 cm.
   MeshBuilder floor("tunnel_floor");
   floor.use(concrete_dry);
-  StripMesher(s.ground, l.line, 0, l.line.length_m(), -l.half_m, l.half_m).band(floor, -l.half_m, l.half_m);
+  StripMesher(s.ground, l.line, -0.2, l.line.length_m(), -l.half_m, l.half_m).band(floor, -l.half_m, l.half_m);
   if (s.options.with_junction)
-    StripMesher(s.ground, l.side, l.half_m, l.side.length_m(), -l.side_half_m, l.side_half_m)
+    StripMesher(s.ground, l.side, l.half_m - 0.2, l.side.length_m(), -l.side_half_m, l.side_half_m)
         .band(floor, -l.side_half_m, l.side_half_m);
   GroundPainter p(s.ground, "markings");
   p.use(paint_yellow_marking);

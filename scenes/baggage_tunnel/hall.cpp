@@ -38,10 +38,8 @@ void add_carousel(MeshBuilder& b, const Ground& ground, double x_m, double y_m, 
   turn.radius_m = 1.4;
   turn.blend_m = 1;
   const std::vector<PathPiece> loop{straight, turn, straight, turn};
-  // Where the loop comes back tells how wide it is: its middle shall be y_m.
-  const double width = CentreLine(start, {straight, turn, straight}).at(2 * straight_m).p_m.y();
-  const double depth = CentreLine(start, {straight, turn}).at(1e3).p_m.y();
-  start.y_m = y_m - 0.5 * std::max(width, depth);
+  // How wide the loop is follows from where its first half ends: its middle shall be y_m.
+  start.y_m = y_m - 0.5 * CentreLine(start, {straight, turn, straight}).at(2 * straight_m).p_m.y();
   const CentreLine line(start, loop);
   b.use(painted_steel);
   add_swept(b, ground, line, 0, line.length_m(), rectangle_outline(-0.6, -0.05, 0.6, 0.42), 0.4);
@@ -63,7 +61,7 @@ void add_doors(Assembly& a, const BaggageTunnelLayout& l, const BaggageTunnelOpt
 }
 
 /// Between the columns of the rows beside the carousels.
-void add_carts(Assembly& a, const BaggageTunnelLayout& l, const BaggageTunnelOptions& o, std::uint64_t seed) {
+void add_carts(Assembly& a, const BaggageTunnelOptions& o, std::uint64_t seed) {
   if (o.carts == 0) return;
   const core::RandomStream random(seed, "scenes/baggage_tunnel/carts");
   const std::uint32_t cart = a.mesh("baggage_cart", [](MeshBuilder& b) { add_baggage_cart(b); });
@@ -74,7 +72,6 @@ void add_carts(Assembly& a, const BaggageTunnelLayout& l, const BaggageTunnelOpt
     a.stand(cart, Label::ground_equipment, x + 0.2 * (random.uniform(i, 0) - 0.5),
             y + 0.15 * (random.uniform(i, 1) - 0.5), 0.06 * (random.uniform(i, 2) - 0.5));
   }
-  (void)l;
 }
 
 }  // namespace
@@ -123,7 +120,7 @@ void add_baggage_hall(Assembly& a, const BaggageTunnelLayout& l, const BaggageTu
     a.put(a.mesh(std::move(loops).build()), Label::other);
   }
   add_doors(a, l, o);
-  add_carts(a, l, o, seed);
+  add_carts(a, o, seed);
 }
 
 }  // namespace tarmac::scenes

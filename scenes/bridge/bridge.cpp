@@ -123,7 +123,7 @@ Mesh make_jet_bridge(const BridgeSite& site, const AircraftType& type, const cor
   add_tunnels(b, T_tunnel, length);
   bridge::add_drive_column(b, T_tunnel, std::max(length - 8.2, 0.55 * length), ground);
   bridge::add_service_stair(b, T_tunnel, length - 3.2, ground);
-  bridge::add_cab(b, type, door, T_world_aircraft);
+  bridge::add_cab(b, type, door, T_world_aircraft, T_tunnel.linear().col(0));
   return std::move(b).build();
 }
 

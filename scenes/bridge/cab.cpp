@@ -2,6 +2,7 @@
 // floor; x forward, y away from the skin, z above the floor.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "scenes/bridge/parts.h"
 
@@ -69,9 +70,41 @@ void add_canopy_roof(MeshBuilder& b, const Skin& skin, double half_m, double cab
   add_loft(b, rings);
 }
 
+/// Floor, roof and wall about the pivot: the wall stands behind it, away from the aircraft, and leaves out where the
+/// tunnel comes in, so that from the door one looks through the cab. `from_tunnel` leads from the tunnel to the pivot.
+void add_round_end(MeshBuilder& b, double pivot_y_m, double radius_m, double top_m, const Vector3d& from_tunnel) {
+  const auto disc = [&](double z0, double z1, double r0, double r1) {
+    add_frustum(b, {0, pivot_y_m, z0}, {0, pivot_y_m, z1}, r0, r1, 40);
+  };
+  b.use(bridge_panel);
+  disc(-floor_slab_m - 0.1, -0.005, radius_m, radius_m);
+  b.use(painted_steel);
+  disc(top_m - 0.14, top_m + 0.25, radius_m + 0.1, radius_m - 0.05);
+  b.use(bridge_panel);
+  double entry = std::atan2(-from_tunnel.y(), -from_tunnel.x());
+  if (entry < -std::numbers::pi / 2) entry += 2 * std::numbers::pi;
+  const double half_entry = std::asin(1.3 / radius_m);
+  const double begin = -0.1, end = std::numbers::pi + 0.1, wall_m = 0.08;
+  const auto wall = [&](double from, double to) {
+    if (to - from < 0.05) return;
+    std::vector<Ring> rings;
+    const int n = std::max(2, static_cast<int>(std::ceil((to - from) / 0.16)));
+    for (int k = 0; k <= n; ++k) {
+      const double a = from + (to - from) * k / n;
+      const Vector3d out(std::cos(a), std::sin(a), 0), at(0, pivot_y_m, 0), up(0, 0, top_m - 0.1);
+      const Vector3d inner = at + (radius_m - wall_m) * out - 0.02 * Vector3d::UnitZ(), outer = inner + wall_m * out;
+      rings.push_back({inner, outer, outer + up, inner + up});
+    }
+    add_loft(b, rings);
+  };
+  wall(begin, std::clamp(entry - half_entry, begin, end));
+  wall(std::clamp(entry + half_entry, begin, end), end);
+}
+
 }  // namespace
 
-void add_cab(MeshBuilder& b, const AircraftType& type, std::size_t door_index, const core::SE3& T_world_aircraft) {
+void add_cab(MeshBuilder& b, const AircraftType& type, std::size_t door_index, const core::SE3& T_world_aircraft,
+             const Vector3d& tunnel_direction_world) {
   const Door& door = type.doors[door_index];
   const Skin skin(type, door);
   b.at(T_world_aircraft * place(-door.x_m, 0, skin.floor_z_m()));
@@ -90,9 +123,8 @@ void add_cab(MeshBuilder& b, const AircraftType& type, std::size_t door_index, c
   b.use(bridge_panel);
   add_box(b, {-half, wall, top - 0.15}, {half, pivot, top + 0.1});
   for (const double x : {-half, half - 0.1}) add_box(b, {x, wall, 0}, {x + 0.1, pivot, top - 0.15});
-  add_frustum(b, {0, pivot, -floor_slab_m - 0.1}, {0, pivot, top}, drum, drum, 40);
-  b.use(painted_steel);
-  add_frustum(b, {0, pivot, top}, {0, pivot, top + 0.25}, drum + 0.1, drum - 0.05, 40);
+  const core::SE3 T_cab_world = (T_world_aircraft * place(-door.x_m, 0, skin.floor_z_m())).inverse();
+  add_round_end(b, pivot, drum, top, T_cab_world.linear() * tunnel_direction_world);
   b.use(bellows);
   const double canopy_top = door.height_m + 0.22;
   for (const double x : {-half + 0.06, half - 0.06}) add_canopy_side(b, skin, x, wall + 0.05, canopy_top);

@@ -24,6 +24,8 @@ void add_drive_column(MeshBuilder& b, const core::SE3& T_world_tunnel, double al
 void add_service_stair(MeshBuilder& b, const core::SE3& T_world_tunnel, double along_m, const Ground& ground);
 
 /// Drum on the pivot, floor with a lip along the skin, walls, roof and canopy at the door.
-void add_cab(MeshBuilder& b, const AircraftType& type, std::size_t door, const core::SE3& T_world_aircraft);
+/// `tunnel_direction_world` leads from the rotunda to the cab.
+void add_cab(MeshBuilder& b, const AircraftType& type, std::size_t door, const core::SE3& T_world_aircraft,
+             const Eigen::Vector3d& tunnel_direction_world);
 
 }  // namespace tarmac::scenes::bridge

@@ -201,7 +201,7 @@ void add_passenger_stairs(MeshBuilder& b, double sill_m) {
     add_road_wheel(b, -2.4 - longer, y, 0.38, 0.26);
   }
   b.use(gse_paint_white);
-  add_box(b, {-3.6 - longer, -1.0, 0.45}, {2.6 + longer, 1.0, 0.8});
+  add_box(b, {-3.6 - longer, -1.0, 0.45}, {2.1 + longer, 1.0, 0.8});
   b.use(galvanised_steel);
   for (int k = 0; k < steps; ++k) {
     add_box(b, {from + k * step_run_m, -0.7, 0.03 + k * rise + rise - 0.06},

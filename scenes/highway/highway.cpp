@@ -45,11 +45,11 @@ std::shared_ptr<const SectionGround> make_road(const HighwayOptions& o, std::uin
   const double edge = l::outer_edge_m(o) + 0.6, foot = edge + l::verge_m, fall = o.crossfall_percent / 100;
   SectionSpec spec;
   spec.across = RoundedProfile({{-2 * l::far_m, -fall * edge - 1.4},
-                                {-foot, -fall * edge - 1.4, 0.8},
+                                {-foot, -fall * edge - 1.4, 1.0},
                                 {-edge, -fall * edge, 0.4},
-                                {0, 0, 0.8},
+                                {0, 0, 1.0},
                                 {edge, -fall * edge, 0.4},
-                                {foot, -fall * edge - 1.4, 0.8},
+                                {foot, -fall * edge - 1.4, 1.0},
                                 {2 * l::far_m, -fall * edge - 1.4}});
   const double third = o.length_m / 3, climb = o.grade_percent / 100 * third;
   spec.along = RoundedProfile({{0, 0}, {third, climb, 40}, {2 * third, climb, 40}, {o.length_m, 0}});
@@ -75,17 +75,35 @@ struct Road {
   }
 };
 
+/// The same ground a little lower: grass beside asphalt.
+class Lowered final : public Ground {
+ public:
+  Lowered(const Ground& ground, double by_m) : ground_(&ground), by_m_(by_m) {}
+  double height_m(double x_m, double y_m, Vector2d* gradient, Vector3d* hessian) const override {
+    return ground_->height_m(x_m, y_m, gradient, hessian) - by_m_;
+  }
+
+ private:
+  const Ground* ground_;
+  double by_m_;
+};
+
+/// Grass reaches a hand's breadth under the asphalt, so that its coarser cells leave no gap.
 void add_surface(Assembly& a, const Road& road) {
+  constexpr double step_m = 0.03, overlap_m = 0.2;
   const double inner = l::inner_edge_m(road.o), outer = l::outer_edge_m(road.o), far = l::far_m;
-  const StripMesher mesher(road.ground, road.line, 0, road.o.length_m, -far, far);
+  const double length = road.o.length_m;
   MeshBuilder asphalt("asphalt"), grass("grass");
   asphalt.use(asphalt_dry);
-  mesher.band(asphalt, -outer, -inner);
-  mesher.band(asphalt, inner, outer);
+  const StripMesher fine(road.ground, road.line, 0, length, -outer, outer);
+  fine.band(asphalt, -outer, -inner);
+  fine.band(asphalt, inner, outer);
   grass.use(grass_green);
-  mesher.band(grass, -inner, inner);
-  mesher.band(grass, outer, far);
-  mesher.band(grass, -far, -outer);
+  const Lowered lower(road.ground, step_m);
+  const StripMesher coarse(lower, road.line, 0, length, -far, far, {.sagitta_m = 0.005, .max_cell_m = 10});
+  coarse.band(grass, -inner - overlap_m, inner + overlap_m);
+  coarse.band(grass, outer - overlap_m, far);
+  coarse.band(grass, -far, -outer + overlap_m);
   a.put(a.mesh(std::move(asphalt).build()), Label::pavement);
   a.put(a.mesh(std::move(grass).build()), Label::terrain);
 }

@@ -1,5 +1,6 @@
 #include "scenes/hills/ground.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double tau = 2 * std::numbers::pi;
 constexpr int kWaves = 48;
-constexpr double kInner_m = 64, kFine_m = 0.5, kCoarse_m = 2;
+constexpr double kInner_m = 64, kFine_m = 0.5, kCoarse_m = 2, kTrackHalf_m = 2;
 
 }  // namespace
 
@@ -64,6 +65,12 @@ std::vector<Vector2d> hills_track() {
     points.emplace_back(-half_m + radius_m * std::cos(a), radius_m * std::sin(a));
   }
   return points;
+}
+
+double distance_m(const Vector2d& p, const std::vector<Vector2d>& track) {
+  double nearest = 1e9;
+  for (const Vector2d& q : track) nearest = std::min(nearest, (p - q).norm());
+  return nearest;
 }
 
 namespace {
@@ -127,11 +134,15 @@ void add_coarse_cell(MeshBuilder& b, GridVertices& grid, int i, int j, int n, in
 Mesh make_hills_mesh(const Ground& ground, double half_size_m) {
   constexpr int n = static_cast<int>(kCoarse_m / kFine_m), inner = static_cast<int>(kInner_m / kFine_m);
   const int half = static_cast<int>(std::ceil(half_size_m / kCoarse_m)) * n;
+  const std::vector<Vector2d> track = hills_track();
+  const auto worn = [&](int i, int j) {
+    return distance_m({(i + 0.5) * kFine_m, (j + 0.5) * kFine_m}, track) < kTrackHalf_m;
+  };
   MeshBuilder b("hills");
-  b.use(MaterialId::soil);
   GridVertices grid(b, ground, half);
   for (int j = -inner; j < inner; ++j) {
     for (int i = -inner; i < inner; ++i) {
+      b.use(worn(i, j) ? MaterialId::soil : MaterialId::meadow);
       if ((i + j) % 2 == 0) {
         b.quad(grid.at(i, j), grid.at(i + 1, j), grid.at(i + 1, j + 1), grid.at(i, j + 1));
       } else {
@@ -139,7 +150,7 @@ Mesh make_hills_mesh(const Ground& ground, double half_size_m) {
       }
     }
   }
-  b.use(MaterialId::grass_green);
+  b.use(MaterialId::meadow);
   for (int j = -half; j < half; j += n) {
     for (int i = -half; i < half; i += n) {
       const bool inside = i >= -inner && i < inner && j >= -inner && j < inner;

@@ -28,6 +28,8 @@ class HillyGround final : public Ground {
 
 /// The track that nothing stands on: a loop around the origin, as points at most 1 m apart.
 std::vector<Eigen::Vector2d> hills_track();
+/// From p to the nearest of the track's points.
+double distance_m(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& track);
 /// Cells of 0.5 m within 64 m of the origin, where the track runs, and of 2 m beyond; the two meet vertex on vertex.
 Mesh make_hills_mesh(const Ground& ground, double half_size_m);
 

@@ -19,12 +19,6 @@ using Eigen::Vector2d;
 constexpr double pi = std::numbers::pi;
 constexpr int kRockShapes = 8, kTreeShapes = 6;
 
-double distance_to_track(const Vector2d& p, const std::vector<Vector2d>& track) {
-  double nearest = 1e9;
-  for (const Vector2d& q : track) nearest = std::min(nearest, (p - q).norm());
-  return nearest;
-}
-
 /// Places drawn one after the other, none nearer to the track than the lane and what stands there need. Half of them
 /// lie near the track, where they are seen best.
 class Scatter {
@@ -37,7 +31,7 @@ class Scatter {
       const bool near = draw() < 0.5;
       const double reach = near ? 60 : options_->half_size_m - 5;
       const Vector2d p(reach * (2 * draw() - 1), reach * (2 * draw() - 1));
-      if (distance_to_track(p, track_) > options_->lane_m + radius_m) return p;
+      if (distance_m(p, track_) > options_->lane_m + radius_m) return p;
     }
   }
 

@@ -104,6 +104,7 @@ std::vector<Row> control_rows() {
       {soil, pavement({"soil", 0.30, 0.4, 0.04, 0, 0, 0, false, {0.46f, 0.38f, 0.28f}})},
       {rock, {"rock", 0.30, 0.35, 0.04, 0, 0, 0, false, {0.55f, 0.53f, 0.50f}}},
       {bark, {"bark", 0.35, 0.4, 0.04, 0, 0, 0, false, {0.36f, 0.29f, 0.23f}}},
+      {meadow, pavement({"meadow", 0.45, 0.5, 0.04, 0, 0, 0, false, {0.45f, 0.52f, 0.27f}})},
       {foliage, {"foliage", 0.55, 0, 0.04, 0.2, 0, 0, false, {0.29f, 0.43f, 0.19f}}},
   };
 }

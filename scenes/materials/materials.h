@@ -60,6 +60,7 @@ enum class MaterialId : std::uint16_t {
   rock,
   bark,
   foliage,
+  meadow,
   count
 };
 

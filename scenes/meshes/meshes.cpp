@@ -200,6 +200,7 @@ Mesh load(const Request& request, Scene& scene) {
   mesh.vertices = std::move(file.vertices);
   for (Eigen::Vector3f& p : mesh.vertices) p = to_mesh(p, request.options.scale, y_is_up).cast<float>();
   check_extent(mesh, request);
+  mesh.materials.reserve(file.triangles.size());
   for (std::size_t t = 0; t < file.triangles.size(); ++t) {
     if (!has_area(mesh, file.triangles[t])) continue;
     mesh.materials.push_back(material_of_name[file.name_of_triangle.empty() ? 0 : file.name_of_triangle[t]]);

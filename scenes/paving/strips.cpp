@@ -163,7 +163,7 @@ void add_ground_region(MeshBuilder& b, const Ground& ground, const Vector2d& low
                        const std::vector<double>& cuts_x_m, const std::vector<double>& cuts_y_m) {
   const auto lines = [&](int axis, const std::vector<double>& cuts) {
     const Vector2d size = high_m - low_m;
-    const double fine = std::max(0.5, size[axis] / 800), coarse = std::max(3.0, size[1 - axis] / 80);
+    const double fine = std::max(0.5, size[axis] / 800), coarse = std::max(0.7, size[1 - axis] / 250);
     const Vector2d reach = 0.5 * (axis == 0 ? Vector2d(fine, coarse) : Vector2d(coarse, fine));
     Sampled most(low_m[axis], high_m[axis], fine);
     for (std::size_t k = 0; k < most.places_m().size(); ++k) {
@@ -225,7 +225,7 @@ Fillet fillet(const Vector2d& corner, const Vector2d& start, const Vector2d& end
 void fill_to_arc(MeshBuilder& b, const Ground& ground, const Fillet& f, const Vector2d& touch0, const Vector2d& knee,
                  const Vector2d& touch1, double most_curved, bool facing_left, const MeshTolerance& tolerance) {
   const double cell =
-      std::clamp(most_curved > 0 ? std::sqrt(4 * tolerance.sagitta_m / most_curved) : tolerance.max_cell_m, 0.3,
+      std::clamp(most_curved > 0 ? std::sqrt(2 * tolerance.sagitta_m / most_curved) : tolerance.max_cell_m, 0.1,
                  tolerance.max_cell_m);
   const int half = std::max(2, static_cast<int>(std::ceil((knee - touch0).norm() / cell)));
   const int rows = std::max(1, static_cast<int>(std::ceil((f.arc(0.5) - knee).norm() / cell)));
@@ -254,7 +254,7 @@ void fill_to_arc(MeshBuilder& b, const Ground& ground, const Fillet& f, const Ve
 
 double most_curved(const Ground& ground, const Vector2d& corner, const Vector2d& leg0, const Vector2d& leg1) {
   double most = 0;
-  constexpr int n = 12;
+  const int n = static_cast<int>(std::ceil(std::max(leg0.norm(), leg1.norm()) / 0.5));
   for (int i = 0; i <= n; ++i) {
     for (int j = 0; j <= n; ++j) {
       const Curvatures c = curvatures(ground, corner + (i * leg0 + j * leg1) / n, leg0.normalized(), leg1.normalized());

@@ -129,7 +129,9 @@ void add_structure(Assembly& a, const Site& s) {
     const double low = s.ground.height_m(x0, 0) + s.l.height_m + 0.03;
     const double high = s.ground.land().height_m(x0, 0) + s.l.parapet_m;
     b.use(tunnel_concrete);
-    add_box(b, {std::min(x0, x1), -y, low}, {std::max(x0, x1), y, high});
+    // In three pieces, as the ground below it has three: land, road, land.
+    for (const auto& [from, to] : {std::pair{-y, -s.l.half_m}, {-s.l.half_m, s.l.half_m}, {s.l.half_m, y}})
+      add_box(b, {std::min(x0, x1), from, low}, {std::max(x0, x1), to, high});
     b.use(sign_face_yellow);  // clear height
     const double face = x0 + end * 0.03;
     add_box(b, {std::min(x0, face), -1.1, low + 0.4}, {std::max(x0, face), 1.1, low + 0.9});
@@ -228,8 +230,8 @@ Scene make_road_tunnel(const RoadTunnelOptions& options, std::uint64_t seed) {
   texture.stream = "scenes/road_tunnel/texture";
   scene.relief = std::make_shared<SlabRelief>(texture, seed);
   const RoadTunnelLayout& l = ground->layout();
-  scene.interest_min = {-l.portal_m - 60, -45};
-  scene.interest_max = {45, 45};
+  scene.interest_min = {std::max(-l.portal_m - 25, -115.0), -35};
+  scene.interest_max = {30, 35};
   Assembly a(scene, *ground);
   const Site site{.options = options, .l = l, .ground = *ground};
   add_road(a, site);

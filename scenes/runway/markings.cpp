@@ -56,7 +56,7 @@ void taxiway(GroundPainter& p, const RunwayLayout& l) {
     for (const double side : {-1.0, 1.0}) {
       for (const double inward : {0.1, 0.4}) {
         const double x = side * (l.taxiway.edge_m - inward);
-        p.layer(0).line({{x, from}, {x, -towards * (l.shoulder_m + 2)}}, 0.15);
+        p.layer(0).line({{x, from}, {x, -towards * (l.shoulder_m + l.fillet_m)}}, 0.15);
       }
     }
     p.layer(2);

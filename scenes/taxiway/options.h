@@ -15,7 +15,7 @@ struct TaxiwayOptions {
   double turn_radius_m = 75;
   double longitudinal_slope_percent = 0.4;
   double transverse_slope_percent = 1.2;
-  double undulation_mm = 8;
+  double undulation_mm = 5;
   double relief_rms_mm = 1.5;
   double swale_depth_m = 0.45;
   double grass_m = 110;

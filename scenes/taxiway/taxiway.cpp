@@ -54,17 +54,17 @@ void add_surfaces(Assembly& a, const Site& site) {
     const double reach = section.shoulder_m + site.options.grass_m;
     Vector2d low = line.at(0).p_m, high = low;
     for (double s = 0; s <= site.length_m(); s += 5) {
-      low = low.cwiseMin(line.place(s, 0));
-      high = high.cwiseMax(line.place(s, reach));
+      for (const double d : {0.0, reach}) {
+        low = low.cwiseMin(line.place(s, d));
+        high = high.cwiseMax(line.place(s, d));
+      }
     }
     add_ground_region(grass, site.ground, low, high, {}, [&](const Vector2d& from, const Vector2d& to) {
-      // Cells that any part of the strip's outer edge leaves uncovered; they overlap the strip by a cell at most.
-      const auto uncovered = [&](double x, double y) {
-        const CentreLine::Place place = line.project({x, y});
-        return place.d_m > left - 0.5 && place.d_m < reach && place.s_m > 0 && place.s_m < site.length_m();
-      };
-      return uncovered(from.x(), from.y()) || uncovered(to.x(), from.y()) || uncovered(to.x(), to.y()) ||
-             uncovered(from.x(), to.y());
+      // All that the strip does not reach, and up to a cell's diagonal of what it does: the two lie on each other
+      // there.
+      const CentreLine::Place place = line.project(0.5 * (from + to));
+      const double half_m = 0.5 * (to - from).norm();
+      return place.d_m > left - half_m && place.d_m < reach && place.s_m > 0 && place.s_m < site.length_m();
     });
   }
   a.put(a.mesh(std::move(pavement).build()), Label::pavement);

@@ -22,14 +22,6 @@ using raycast::SweepTracer;
 constexpr double underside_m = 0.3;
 constexpr double reach_m = 60;
 
-struct Equipment {
-  const char* name;
-  void (*add)(scenes::MeshBuilder&);
-};
-constexpr Equipment equipment[] = {{"baggage-tractor", scenes::add_baggage_tractor},
-                                   {"catering-truck", scenes::add_catering_truck},
-                                   {"passenger-stairs", scenes::add_passenger_stairs}};
-
 void bounds(const scenes::Mesh& mesh, Vector3d& low, Vector3d& high) {
   low.setConstant(std::numeric_limits<double>::infinity());
   high = -low;
@@ -60,7 +52,7 @@ void BodyOptions::visit(core::OptionVisitor& v) {
 
 std::vector<std::string> body_kinds() {
   std::vector<std::string> kinds{"none", "box"};
-  for (const Equipment& e : equipment) kinds.emplace_back(e.name);
+  for (const scenes::EquipmentEntry& e : scenes::equipment()) kinds.emplace_back(e.name);
   return kinds;
 }
 
@@ -84,16 +76,14 @@ void check_body(const core::ConfigNode& node, const BodyOptions& o, const core::
 }
 
 scenes::Mesh body_mesh(const BodyOptions& o) {
-  scenes::MeshBuilder b("own_body");
   if (o.kind == "box") {
+    scenes::MeshBuilder b("own_body");
     b.use(scenes::MaterialId::gse_paint_white);
     scenes::add_box(b, {-o.rear_overhang_m, -o.width_m / 2, underside_m},
                     {o.length_m - o.rear_overhang_m, o.width_m / 2, o.height_m});
     return std::move(b).build();
   }
-  for (const Equipment& e : equipment)
-    if (o.kind == e.name) e.add(b);
-  scenes::Mesh mesh = std::move(b).build();
+  scenes::Mesh mesh = scenes::make_equipment(o.kind);
   Vector3d low, high;
   bounds(mesh, low, high);
   const auto forward = static_cast<float>(-o.rear_overhang_m - low.x());

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "core/error.h"
 #include "metrics/controls.h"
@@ -50,6 +52,23 @@ Drive straight_drive(double speed, DriveShape shape = {.sweeps = 12}) {
     targets.push_back({targets.front().p_world + Eigen::Vector3d(1, 1, 1), true});
     return targets;
   });
+}
+
+/// Points and labels together in order of firing time, as recordings have them.
+sim::truth::PointLabels sorted_by_time(LidarSweep& sweep, const sim::truth::PointLabels& labels) {
+  std::vector<std::size_t> order(sweep.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return labels.t_ns[a] < labels.t_ns[b]; });
+  const LidarSweep points = sweep;
+  sim::truth::PointLabels sorted = labels;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::size_t i = order[k];
+    sweep.x_m[k] = points.x_m[i], sweep.y_m[k] = points.y_m[i], sweep.z_m[k] = points.z_m[i];
+    sweep.t_ns[k] = points.t_ns[i], sweep.ring[k] = points.ring[i], sweep.intensity[k] = points.intensity[i];
+    sorted.t_ns[k] = labels.t_ns[i], sorted.moving[k] = labels.moving[i], sorted.label[k] = labels.label[i];
+    sorted.instance[k] = labels.instance[i], sorted.kind[k] = labels.kind[i];
+  }
+  return sorted;
 }
 
 /// A pose held over the sweep, true at its end: a point seen t before the end lies v t off. Columns are d apart, M of
@@ -200,6 +219,45 @@ TEST(PointError, PointsThatAreNotFiniteAreLeftOut) {
   const Evaluation e = drive.evaluate(make_control(drive.truth, drive.source()));
   EXPECT_DOUBLE_EQ(value(e, "point_coverage_percent"), 100);
   EXPECT_LT(value(e, "point_error_max_m"), 1e-9);
+}
+
+/// A method that has gone wrong by an angle is off by that angle times the distance: ghosts far away would show it
+/// most.
+TEST(PointError, GhostsTheOwnVehicleAndNoiseAreInNoFigure) {
+  using sim::truth::ReturnKind;
+  const Drive plain = straight_drive(8);
+  const auto with_stray_points = [&](ReturnKind kind) {
+    Drive drive = plain;
+    for (std::size_t k = 0; k < drive.sweeps.size(); ++k) {
+      drive.labels[k].kind.assign(drive.sweeps[k].size(), ReturnKind::surface);
+      for (int c = 0; c < drive.shape.columns; ++c) {
+        const auto t_ns = static_cast<std::int32_t>((c * drive.shape.column_spacing).count());
+        drive.sweeps[k].push_back(Eigen::Vector3f(90, 0, 0), t_ns, 0, 1);
+        drive.labels[k].t_ns.push_back(t_ns);
+        drive.labels[k].moving.push_back(0);
+        drive.labels[k].label.push_back(scenes::Label::building);
+        drive.labels[k].instance.push_back(0);
+        drive.labels[k].kind.push_back(kind);
+      }
+      drive.labels[k] = sorted_by_time(drive.sweeps[k], drive.labels[k]);
+    }
+    return drive;
+  };
+  const auto rms_of = [&](const Drive& drive) {
+    const Estimate estimate = held_estimate(drive, [&](int k) {
+      return kMapWorld * drive.truth.motion->pose(drive.shape.end(k)) * pose({0, 0, 0}, {0, 0, 0.01 * k});
+    });
+    const Evaluation e = drive.evaluate(estimate);
+    return std::pair(value(e, "point_error_rms_m"), value(e, "deskew_error_rms_m"));
+  };
+  const auto [point, deskew] = rms_of(plain);
+  for (const ReturnKind kind : {ReturnKind::ghost, ReturnKind::self, ReturnKind::noise, ReturnKind::retro_halo}) {
+    const auto [with_point, with_deskew] = rms_of(with_stray_points(kind));
+    EXPECT_NEAR(with_point, point, 1e-12) << name_of(kind);
+    EXPECT_NEAR(with_deskew, deskew, 1e-12) << name_of(kind);
+  }
+  for (const ReturnKind kind : {ReturnKind::mixed, ReturnKind::edge, ReturnKind::transmitted})
+    EXPECT_GT(rms_of(with_stray_points(kind)).first, 1.01 * point) << name_of(kind);
 }
 
 TEST(PointError, LabelsOfAnotherRecordingAreRefused) {

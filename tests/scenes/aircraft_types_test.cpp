@@ -287,8 +287,8 @@ TEST_P(EveryAircraft, OpensItsDoorIntoADarkCabin) {
   EXPECT_GT(30 - leaf.distance_m, fuselage_half_width_m(type(), door.x_m - door.width_m - 0.08, z) + 0.05);
 }
 
-INSTANTIATE_TEST_SUITE_P(Types, EveryAircraft, ::testing::ValuesIn(aircraft_names()), [](const auto& info) {
-  std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(Types, EveryAircraft, ::testing::ValuesIn(aircraft_names()), [](const auto& tested) {
+  std::string name = tested.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });

@@ -55,8 +55,8 @@ std::vector<const char*> names() {
   for (const EquipmentEntry& e : equipment()) list.push_back(e.name);
   return list;
 }
-INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEquipment, ::testing::ValuesIn(names()), [](const auto& info) {
-  std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEquipment, ::testing::ValuesIn(names()), [](const auto& tested) {
+  std::string name = tested.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });

@@ -155,13 +155,21 @@ inline void seed_decides_the_bytes(const std::string& kind) {
   EXPECT_NE(first, fingerprint(scenes::make_scene(node_of(kind), 2)));
 }
 
-/// `other` holds a value unlike the default for every option of the kind.
-inline void every_option_changes_the_scene(const std::string& kind, const std::map<std::string, std::string>& other) {
-  const std::string plain = fingerprint(scenes::make_scene(node_of(kind), 1));
+/// `other` holds a value for every option of the kind that is unlike its default and that in `small`, the options that
+/// keep the scene small here.
+inline void every_option_changes_the_scene(const std::string& kind, const std::map<std::string, std::string>& other,
+                                           const std::map<std::string, std::string>& small = {}) {
+  const auto made = [&](const std::map<std::string, std::string>& options) {
+    std::string yaml;
+    for (const auto& [name, value] : options) yaml += name + ": " + value + "\n";
+    return fingerprint(scenes::make_scene(node_of(kind, yaml), 1));
+  };
+  const std::string plain = made(small);
   for (const core::OptionDescription& option : scenes::scene_of(node_of(kind)).describe()) {
     ASSERT_TRUE(other.contains(option.name)) << option.name << " is not tested";
-    const std::string yaml = option.name + ": " + other.at(option.name) + "\n";
-    EXPECT_NE(plain, fingerprint(scenes::make_scene(node_of(kind, yaml), 1))) << option.name;
+    std::map<std::string, std::string> options = small;
+    options[option.name] = other.at(option.name);
+    EXPECT_NE(plain, made(options)) << option.name;
   }
 }
 

@@ -259,11 +259,11 @@ TEST(Swept, IsAClosedBarOfItsSectionsVolume) {
 TEST(GroundPainter, PaintLiesAMillimetreOverTheGroundAndKeepsItsWidth) {
   const SectionGround ground(bent_line(), bumpy_section(), 2);
   GroundPainter p(ground);
-  p.use(MaterialId::paint_white_marking).layer(1).line(ground.line().offset_line(20, 180, 4, 1), 0.3);
+  p.use(MaterialId::paint_white_marking).layer(1).line(ground.line().offset_line(20, 250, 4, 1), 0.3);
   const Mesh mesh = std::move(p).build();
   EXPECT_TRUE(faces_up(mesh));
   const double turned = 80 * std::numbers::pi / 180;
-  EXPECT_NEAR(area_in_plan_m2(mesh), 0.3 * (160 - 4 * turned), 0.05);
+  EXPECT_NEAR(area_in_plan_m2(mesh), 0.3 * (230 - 4 * turned), 0.05);
   for (const Eigen::Vector3f& q : mesh.vertices) ASSERT_NEAR(q.z() - ground.height_m(q.x(), q.y()), 0.0016, 2e-5);
 }
 

@@ -1,7 +1,6 @@
 // A drive's length costs no memory: what is simulated is written as it comes.
-#include <gtest/gtest.h>
-
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include "core/files.h"
 #include "core/recording.h"
@@ -42,8 +41,9 @@ rig:
 
 double peak_mb(const PrivateFolder& folder, double duration_s) {
   ChildRequest request;
-  request.command = {(program_folder() / "tarmac").string(), "simulate", "long.yaml", "-o", "run", "--jobs", "2",
-                     "--set", fmt::format("duration_s={}", duration_s)};
+  request.command = {
+      (program_folder() / "tarmac").string(),  "simulate", "long.yaml", "-o", "run", "--jobs", "2", "--set",
+      fmt::format("duration_s={}", duration_s)};
   request.working_folder = folder.path();
   request.log_file = folder.path() / "log.txt";
   request.limits.wall_s = 600;

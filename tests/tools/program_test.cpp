@@ -224,6 +224,7 @@ TEST_F(Program, BadInputIsRefusedWithFileLineAndField) {
   expect_refused({"evaluate", "."}, HasSubstr("provenance.json"));
   expect_refused({"evaluate", "--truth", "short.yaml", "--estimate", "short.yaml"}, HasSubstr("short.yaml"));
   expect_refused({"describe", "sensor", "vlp-61"}, HasSubstr("vlp-16"));
+  expect_refused({"describe", "aircraft", "b777-300e"}, HasSubstr("did you mean b777-300er?"));
   expect_refused({"describe", "fault", "lida"}, HasSubstr("did you mean 'lidar'"));
   expect_refused({"fly"}, HasSubstr("fly"));
   expect_refused({"run"}, HasSubstr("scenario"));
@@ -347,6 +348,9 @@ TEST_F(Program, ListsAndDescribesWhatThereIs) {
   EXPECT_THAT(tarmac({"describe", "estimator", "kiss-icp"}).text,
               AllOf(HasSubstr("voxel_size_m"), HasSubstr("default 1")));
   EXPECT_THAT(tarmac({"describe", "sensor", "vlp-16"}).text, HasSubstr("16"));
+  EXPECT_THAT(tarmac({"describe", "aircraft", "b777-300er"}).text, AllOf(HasSubstr("73.86"), HasSubstr("6 wheels")));
+  EXPECT_THAT(tarmac({"describe", "equipment", "apron-bus"}).text, HasSubstr("13.9 x 3 x 3.2"));
+  EXPECT_THAT(tarmac({"list", "equipment"}).text, HasSubstr("refueller"));
   EXPECT_THAT(tarmac({"describe", "fault", "lidar"}).text, HasSubstr("faults.lidar.point_time_unit"));
   EXPECT_THAT(tarmac({"--version"}).text, HasSubstr("tarmac"));
   for (const char* kind : {"scenarios", "scenes", "motions", "sensors", "imus", "faults", "estimators", "metrics"}) {

@@ -140,7 +140,8 @@ std::string describe_scene(const std::string& name) {
     const auto built = scenes::make_scene(core::ConfigNode::parse("kind: " + name + "\n", "describe scene " + name), 1);
     return fmt::format("{}: {}\n{} triangles after instancing, {} materials, {} actors\n{}", scene->name,
                        scene->summary, built.triangle_count(), built.materials.size(), built.actors.size(),
-                       options_text(scene->describe()));
+                       options_text(scene->describe()) + "of every kind, " +
+                           options_text(scenes::describe_common_options()));
   }
   unknown("scene", name, scene_entries());
 }

@@ -135,7 +135,7 @@ TEST_F(OwnMesh, GltfStandsUprightAndItsNodesMoveAndMirrorItsMeshes) {
 
 TEST_F(OwnMesh, PolygonsNegativeIndicesAndNamesOfMaterialsInAnObj) {
   write("house.obj",
-        "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 2\nv 4 0 2\n"
+        "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 2\nv 4 0 2\nvt 0 0\nvn 0 0 1\n"
         "usemtl floor tiles\nf 1 2 3 4\n"
         "usemtl concrete_wall\nf -6/1 -5/1 -1/1 -2/1\n"
         "usemtl pane\nf 1//1 5//1 4//1\n");
@@ -326,8 +326,9 @@ INSTANTIATE_TEST_SUITE_P(All, MalformedMesh, testing::ValuesIn(malformed()), nam
 
 TEST_F(OwnMesh, WrongEntriesAreRefusedWithTheirLine) {
   write("a.obj", tests::obj_text(tetrahedron()));
-  EXPECT_THAT(message_of("{file: b.obj}"),
-              HasSubstr("scenario.yaml:5: meshes.0.file: " + (folder_ / "b.obj").string() + ": there is no such file"));
+  EXPECT_THAT(
+      message_of("{file: b.obj}"),
+      HasSubstr("scenario.yaml:5: scene.meshes.0.file: " + (folder_ / "b.obj").string() + ": there is no such file"));
   EXPECT_THAT(message_of("{file: .}"), HasSubstr("is no file"));
   EXPECT_THAT(message_of("{material: brick}"), HasSubstr("file: is missing"));
   EXPECT_THAT(message_of("{file: a.obj, material: brick, scale: 0}"), HasSubstr("scale: 0 must be above 0"));

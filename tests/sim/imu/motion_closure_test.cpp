@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Shipped, OnWheels,
                          testing::Values(std::pair{"emergency-brake", 34.0}, std::pair{"kerb-and-joints", 40.0},
                                          std::pair{"tight-turn-tug", 46.0}, std::pair{"articulated-tug", 60.0},
                                          std::pair{"recorded-path", 48.0}),
-                         [](const auto& info) { return name_of(info.param.first); });
+                         [](const auto& test) { return name_of(test.param.first); });
 
 TEST_P(OnWheels, ClosesToACentimetreAndConverges) {
   const auto [scenario, span_s] = GetParam();
@@ -110,7 +110,7 @@ TEST_P(OnWheels, ClosesToACentimetreAndConverges) {
 
 class CarriedOrFlying : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Shipped, CarriedOrFlying, testing::Values("handheld-walk", "handheld-run", "drone-survey"),
-                         [](const auto& info) { return name_of(info.param); });
+                         [](const auto& test) { return name_of(test.param); });
 
 TEST_P(CarriedOrFlying, ClosesByAFourthOrderRuleAndNotByEuler) {
   const auto motion = tests::shipped_drive(GetParam(), std::string(GetParam()) == "handheld-run" ? 36 : 60);

@@ -39,22 +39,31 @@ TEST(Firing, OusterColumnsComeAtTheirFractionOfTheRevolution) {
 
 TEST(Firing, OusterBeamsFollowTheMakersFormula) {
   // In the lidar frame: x = (r-n) cos(te+ta) cos(phi) + n cos(te), y likewise with sin, z = (r-n) sin(phi);
-  // the sensor frame is turned by 180 degrees about z and 36.18 mm lower.
-  const Profile& p = profile("ouster-os1-64-gen2");
-  const FiringTable firing(p, {1024, 10});
-  const SweepSpan sweep = firing.sweep(3);
-  const double r = 41.25, n = 15.806e-3;
-  for (const std::int64_t m : {0, 1, 255, 512, 1023})
-    for (std::size_t c = 0; c < p.channels(); ++c) {
-      const double te = 2 * M_PI * (1 - static_cast<double>(m) / 1024), ta = -p.azimuth_offset_cw_deg[c] * rad,
-                   phi = p.elevation_deg[c] * rad;
-      const Vector3d p_lidar((r - n) * std::cos(te + ta) * std::cos(phi) + n * std::cos(te),
-                             (r - n) * std::sin(te + ta) * std::cos(phi) + n * std::sin(te), (r - n) * std::sin(phi));
-      const Vector3d p_sensor(-p_lidar.x(), -p_lidar.y(), p_lidar.z() + 0.03618);
-      const Cycle cycle = firing.cycle(sweep, m);
-      EXPECT_LT((firing.origin(cycle) + (r - firing.range_offset_m()) * firing.direction(cycle, c) - p_sensor).norm(),
-                1e-12);
-    }
+  // the sensor frame is turned by 180 degrees about z, and its origin lies lower, at the base.
+  struct Sensor {
+    const char* name;
+    double n, height_m;
+  };
+  for (const Sensor& sensor :
+       {Sensor{"ouster-os1-64-gen2", 15.806e-3, 0.03618}, Sensor{"ouster-os1-128-rev7", 16.721e-3, 0.038195},
+        Sensor{"ouster-os0-128-rev7", 27.116e-3, 0.038195}}) {
+    const Profile& p = profile(sensor.name);
+    const FiringTable firing(p, {1024, 10});
+    const SweepSpan sweep = firing.sweep(3);
+    const double r = 41.25, n = sensor.n;
+    for (const std::int64_t m : {0, 1, 255, 512, 1023})
+      for (std::size_t c = 0; c < p.channels(); ++c) {
+        const double te = 2 * M_PI * (1 - static_cast<double>(m) / 1024), ta = -p.azimuth_offset_cw_deg[c] * rad,
+                     phi = p.elevation_deg[c] * rad;
+        const Vector3d p_lidar((r - n) * std::cos(te + ta) * std::cos(phi) + n * std::cos(te),
+                               (r - n) * std::sin(te + ta) * std::cos(phi) + n * std::sin(te), (r - n) * std::sin(phi));
+        const Vector3d p_sensor(-p_lidar.x(), -p_lidar.y(), p_lidar.z() + sensor.height_m);
+        const Cycle cycle = firing.cycle(sweep, m);
+        EXPECT_LT((firing.origin(cycle) + (r - firing.range_offset_m()) * firing.direction(cycle, c) - p_sensor).norm(),
+                  1e-12)
+            << sensor.name;
+      }
+  }
 }
 
 TEST(Firing, VelodyneTimesAreOrderedAndMatchTheFormula) {

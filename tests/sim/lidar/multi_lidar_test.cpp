@@ -227,7 +227,7 @@ TEST_F(MultiLidar, TruthReplayScoresZeroWithTrueExtrinsicsAndTheirErrorWithWrong
   const Recording recording = run(clean);
   const truth::GroundTruth truth = truth_of(clean);
   const core::Estimate replay = metrics::make_control(truth, recording);
-  EXPECT_LT(value_of(evaluate(replay, recording, &truth, nullptr, {.threads = 2}), "point_error_rms_m"), 1e-5);
+  EXPECT_LT(value_of(metrics::evaluate(replay, recording, &truth, nullptr, {.threads = 2}), "point_error_rms_m"), 1e-5);
 
   // The second sensor stands 0.2 m off: all its points are misplaced by that, in any alignment that trusts the poses.
   const SimulationInput wrong = input_of(two_sensors, 0.65, "{lidars: [{}, {extrinsic_error: {xyz_m: [0, 0, 0.2]}}]}");
@@ -246,8 +246,8 @@ TEST_F(MultiLidar, TruthReplayScoresZeroWithTrueExtrinsicsAndTheirErrorWithWrong
   }
   const double expected = 0.2 * std::sqrt(static_cast<double>(of_second) / static_cast<double>(static_points));
   const core::Estimate off_replay = metrics::make_control(off_truth, off);
-  EXPECT_NEAR(value_of(evaluate(off_replay, off, &off_truth, nullptr, {.threads = 2}), "point_error_rms_m"), expected,
-              1e-4);
+  EXPECT_NEAR(value_of(metrics::evaluate(off_replay, off, &off_truth, nullptr, {.threads = 2}), "point_error_rms_m"),
+              expected, 1e-4);
   EXPECT_GT(expected, 0.05);
 }
 
@@ -263,7 +263,7 @@ TEST_F(MultiLidar, KissIcpFollowsTheMergedSweeps) {
   ASSERT_EQ(result.estimate.sweeps.size(), 20u);
   for (const core::SweepResult& sweep : result.estimate.sweeps) EXPECT_EQ(sweep.status, core::SweepStatus::ok);
   EXPECT_THAT(result.log, testing::Contains(HasSubstr("2 LiDARs")));
-  const metrics::Evaluation evaluation = evaluate(result.estimate, recording, &truth, nullptr, {.threads = 2});
+  const metrics::Evaluation evaluation = metrics::evaluate(result.estimate, recording, &truth, nullptr, {.threads = 2});
   EXPECT_LT(value_of(evaluation, "ate_se3_rmse_m"), 0.1);  // of four metres
   bool first = false, second = false;
   for (const core::SweepDiagnostics& sweep : result.diagnostics)
