@@ -19,22 +19,15 @@ PoseTrack::PoseTrack(const std::vector<core::SE3>& knots, double span_ns) {
 
 Frame PoseTrack::at(double t_ns) const {
   if (still()) return {Eigen::Quaterniond(knots_.front().q).toRotationMatrix(), knots_.front().p};
-  const auto last = static_cast<std::ptrdiff_t>(knots_.size()) - 1;
   const double place = t_ns * knots_per_ns_;
-  // Four knots about the place; fewer where there are fewer.
-  const std::ptrdiff_t count = std::min<std::ptrdiff_t>(4, last + 1);
-  const auto first =
-      std::clamp(static_cast<std::ptrdiff_t>(std::floor(place)) - 1, std::ptrdiff_t{0}, last + 1 - count);
-  Vector3d p = Vector3d::Zero();
-  Eigen::Vector4d q = Eigen::Vector4d::Zero();
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    double weight = 1;
-    for (std::ptrdiff_t j = 0; j < count; ++j)
-      if (j != i) weight *= (place - static_cast<double>(first + j)) / static_cast<double>(i - j);
-    const Knot& knot = knots_[static_cast<std::size_t>(first + i)];
-    p += weight * knot.p;
-    q += weight * knot.q;
-  }
+  const auto most = static_cast<double>(knots_.size() - 4);
+  const double first = std::clamp(std::floor(place) - 1, 0.0, most);
+  const Knot* knots = &knots_[static_cast<std::size_t>(first)];
+  // Lagrange's cubic through the knots at -1, 0, 1 and 2.
+  const double u = place - first - 1, a = u + 1, b = u - 1, c = u - 2;
+  const double w0 = -u * b * c / 6, w1 = a * b * c / 2, w2 = -a * u * c / 2, w3 = a * u * b / 6;
+  const Vector3d p = w0 * knots[0].p + w1 * knots[1].p + w2 * knots[2].p + w3 * knots[3].p;
+  const Eigen::Vector4d q = w0 * knots[0].q + w1 * knots[1].q + w2 * knots[2].q + w3 * knots[3].q;
   return {Eigen::Quaterniond(q.normalized()).toRotationMatrix(), p};
 }
 

@@ -22,7 +22,7 @@ inline Frame frame_of(const core::SE3& T) {
 /// micrometres.
 class PoseTrack {
  public:
-  /// One knot: it stands still.
+  /// One knot: it stands still. Otherwise at least four, the first at 0 and the last at `span_ns`.
   PoseTrack(const std::vector<core::SE3>& knots, double span_ns);
   Frame at(double t_ns) const;
   bool still() const { return knots_.size() == 1; }
