@@ -3,8 +3,8 @@
 namespace tarmac::scenes {
 
 void StartOptions::visit(core::OptionVisitor& v) {
-  v("x_m", x_m, "world position of the point under the rear axle");
-  v("y_m", y_m, "world position of the point under the rear axle");
+  v("x_m", x_m, "world position where the path begins (of a vehicle: under its rear axle)");
+  v("y_m", y_m, "world position where the path begins (of a vehicle: under its rear axle)");
   v("heading_deg", heading_deg, "heading of the path from east, counter-clockwise");
   v("speed_m_s", speed_m_s, "speed at t = 0", {.at_least = 0, .at_most = 40});
 }
@@ -26,8 +26,8 @@ void SpeedEvent::visit(core::OptionVisitor& v) {
   v("wait_s", wait_s, "without at_s, at_m, by_m: time between the end of the change before and this one's begin",
     {.at_least = 0});
   v("onset_s", onset_s,
-    "time in which the acceleration comes up to its peak, stays there, and in which it goes again (0: it swells and "
-    "fades over the whole change)",
+    "time in which the acceleration comes up to its peak, and in which it goes again (0: it swells and fades over the "
+    "whole change)",
     {.at_least = 0, .at_most = 5});
   v("abs_m_s2", abs_m_s2, "ripple of the acceleration by anti-lock brakes, or by wheels that spin",
     {.at_least = 0, .at_most = 3});

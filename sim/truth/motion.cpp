@@ -62,6 +62,7 @@ std::vector<OptionDescription> describe() {
 
 struct Kind {
   const char* name;
+  const char* summary;
   Motion (*make)(const ConfigNode&, Duration, std::shared_ptr<const scenes::Ground>, std::uint64_t);
   std::string (*resolve)(const ConfigNode&);
   std::vector<OptionDescription> (*describe)();
@@ -70,32 +71,39 @@ struct Kind {
 
 /// A new kind of motion is one line here.
 constexpr std::array kinds{
-    Kind{"drive", make_drive, resolve<read_drive_options>, describe<DriveOptions>,
+    Kind{"drive", "a road vehicle that follows a path, brakes, sways on its suspension and shakes", make_drive,
+         resolve<read_drive_options>, describe<DriveOptions>,
          "speeds and curvatures change by (1 + tanh(1/(1-u) - 1/u over 2))/2, infinitely differentiable and not "
          "analytic; "
          "sines of the distance for ripple, wander, road and tyres, and of the time for the engine; position by "
          "quadrature; heave, pitch and roll solve an oscillator's equation (degree 7 every ms)"},
-    Kind{"towed", make_towed, resolve<read_towed_options>, describe<TowedOptions>,
+    Kind{"towed", "a trailer behind a tug, the sensor on its last link", make_towed, resolve<read_towed_options>,
+         describe<TowedOptions>,
          "the tug as a drive; the links' headings solve the equation of axles that do not slip, over the distance "
          "(degree "
          "7 every 2 cm of it), and the place follows from them; heave, pitch and roll as a drive's"},
-    Kind{"handheld", make_handheld, resolve<read_handheld_options>, describe<HandheldOptions>,
+    Kind{"handheld", "a device in the hands of somebody who walks or runs", make_handheld,
+         resolve<read_handheld_options>, describe<HandheldOptions>,
          "path and speed as a drive's; sines of the steps' phase, which is a sum of sines of the distance; strikes are "
          "damped sines that swell and end by the infinitely differentiable step; tremor and posture are sines of the "
          "time"},
-    Kind{"drone", make_drone, resolve<read_drone_options>, describe<DroneOptions>,
+    Kind{"drone", "a multirotor that takes off and follows a path in gusts", make_drone, resolve<read_drone_options>,
+         describe<DroneOptions>,
          "path and speed as a drive's, heights by the infinitely differentiable step; gusts and what the drone gives "
          "way "
          "to them are sines of the time; the attitude is that of the thrust: a quotient of these; rotors are sines"},
-    Kind{"recorded", make_from_path, resolve<read_recorded_options>, describe<RecordedOptions>,
+    Kind{"recorded", "poses of a TUM or CSV file, followed smoothly", make_from_path, resolve<read_recorded_options>,
+         describe<RecordedOptions>,
          "polynomials of degree 7 through eight recorded poses each, blended around every recorded time by the "
          "infinitely "
          "differentiable step over windows whose ends lie on no regular grid; quaternions divided by their length"},
-    Kind{"constant-twist", make_twist, resolve<read<ConstantTwistOptions>>, describe<ConstantTwistOptions>,
+    Kind{"constant-twist", "one screw motion: a control", make_twist, resolve<read<ConstantTwistOptions>>,
+         describe<ConstantTwistOptions>,
          "T(0) Exp(t xi): the class of two-pose screw interpolation, hence a control and not a judge"},
-    Kind{"straight", make_straight, resolve<read<StraightOptions>>, describe<StraightOptions>,
+    Kind{"straight", "one velocity: a control", make_straight, resolve<read<StraightOptions>>,
+         describe<StraightOptions>,
          "linear in time: the class of every interpolation, hence a control and not a judge"},
-    Kind{"still", make_still, resolve<read<StillOptions>>, describe<StillOptions>,
+    Kind{"still", "no motion: a control", make_still, resolve<read<StillOptions>>, describe<StillOptions>,
          "constant: the class of every interpolation, hence a control and not a judge"},
 };
 
@@ -141,6 +149,10 @@ std::vector<std::string> motion_kinds() {
   std::vector<std::string> names;
   for (const Kind& kind : kinds) names.emplace_back(kind.name);
   return names;
+}
+
+std::string motion_summary(const std::string& kind) {
+  return kind_named(kind).summary;
 }
 
 std::vector<OptionDescription> describe_motion(const std::string& kind) {

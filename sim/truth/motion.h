@@ -21,6 +21,8 @@ std::shared_ptr<const core::SmoothTrajectory> make_motion(const core::ConfigNode
 /// The motion block with every option written out, indented by 2.
 std::string resolve_motion(const core::ConfigNode& node);
 std::vector<std::string> motion_kinds();
+/// One line. Throws InputError for an unknown kind, as does the next.
+std::string motion_summary(const std::string& kind);
 std::vector<core::OptionDescription> describe_motion(const std::string& kind);
 
 }  // namespace tarmac::sim::truth

@@ -17,6 +17,7 @@
 #include "scenes/equipment/equipment.h"
 #include "scenes/registry.h"
 #include "sim/simulate.h"
+#include "sim/truth/function_class.h"
 #include "sim/truth/motion.h"
 #include "tools/tarmac/commands.h"
 #include "tools/tarmac/layout.h"
@@ -204,7 +205,7 @@ std::string describe_equipment(const std::string& name) {
 
 std::vector<Entry> motion_entries() {
   std::vector<Entry> entries;
-  for (const std::string& kind : sim::truth::motion_kinds()) entries.push_back({kind, ""});
+  for (const std::string& kind : sim::truth::motion_kinds()) entries.push_back({kind, sim::truth::motion_summary(kind)});
   return entries;
 }
 
@@ -270,7 +271,10 @@ const std::vector<Kind>& kinds() {
       {"aircraft", "aircraft", aircraft_entries, describe_aircraft},
       {"equipment", "equipment", equipment_entries, describe_equipment},
       {"motions", "motion", motion_entries,
-       [](const std::string& name) { return options_text(sim::truth::describe_motion(name)); }},
+       [](const std::string& name) {
+         return fmt::format("{}: {}\nfunction class: {}\n{}", name, sim::truth::motion_summary(name),
+                            sim::truth::motion_function_class(name), options_text(sim::truth::describe_motion(name)));
+       }},
       {"sensors", "sensor", [] { return catalogue_entries(sim::lidar_catalogue()); }, sim::describe_lidar},
       {"imus", "imu", [] { return catalogue_entries(sim::imu_catalogue()); }, sim::describe_imu},
       {"faults", "fault", fault_entries, describe_fault},
