@@ -28,7 +28,7 @@ struct ScenarioArguments {
   std::string diagnostics = "full";
   std::string estimator_program;  ///< another build's tarmac-estimate; empty = this one's
   bool fast = false;
-  bool force = false;  ///< simulate although the disk seems to have too little room
+  bool force = false;        ///< simulate although the disk seems to have too little room
   bool point_truth = false;  ///< simulate only
 };
 int run_command(const ScenarioArguments& arguments, const CommonArguments& common);
