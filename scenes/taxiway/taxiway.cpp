@@ -64,7 +64,8 @@ void add_surfaces(Assembly& a, const Site& site) {
       // there.
       const CentreLine::Place place = line.project(0.5 * (from + to));
       const double half_m = 0.5 * (to - from).norm();
-      return place.d_m > left - half_m && place.d_m < reach && place.s_m > 0 && place.s_m < site.length_m();
+      return place.d_m > left - half_m && place.d_m < reach + half_m && place.s_m > -half_m &&
+             place.s_m < site.length_m() + half_m;
     });
   }
   a.put(a.mesh(std::move(pavement).build()), Label::pavement);
