@@ -7,7 +7,7 @@
 #include "core/chunk_file.h"
 #include "core/files.h"
 #include "core/recording.h"
-#include "io/world/exr/range_image.h"
+#include "io/exr/range_image.h"
 #include "sim/truth/ground_truth.h"
 #include "tools/tarmac/child.h"
 
