@@ -223,8 +223,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"  - kind: bus\n    path: [{straight_m: 5}, {turn_deg: 90, radius_m: 3, blend_m: 1}]\n    speed:\n"
             "      - {to_m_s: 1}\n",
             "3", "turn more widely"},
-        Bad{"  - kind: follow-me\n    path: [{straight_m: 60}, {turn_deg: 90, radius_m: 9, blend_m: 3}, {straight_m: "
-            "60}]\n"
+        Bad{"  - kind: follow-me\n    path: [{straight_m: 150}, {turn_deg: 90, radius_m: 9, blend_m: 3}, {straight_m: "
+            "350}]\n"
             "    speed:\n      - {to_m_s: 15, peak_m_s2: 3}\n",
             "3", "sideways"},
         Bad{"  - kind: baggage-train\n    carts: 6\n    path: [{straight_m: 9}, {turn_deg: 270, radius_m: 3.2, "
