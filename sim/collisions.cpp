@@ -165,9 +165,14 @@ double speed_m_s(const Body& body, Time t) {
          body.acceleration_m_s2(t, later) * difference_s;
 }
 
-/// Distance of two bodies, the first of them lifted. 0 or less: they meet.
-double gap_m(const Body& a, const Body& b, Time t, double lift_a_m) {
-  double least_m = std::numeric_limits<double>::infinity();
+struct Nearest {
+  double distance_m = std::numeric_limits<double>::infinity();  ///< 0 or less: they meet
+  std::size_t of_second = 0;                                    ///< triangle of the second body
+};
+
+/// Two bodies, the first of them lifted.
+Nearest nearest(const Body& a, const Body& b, Time t, double lift_a_m) {
+  Nearest least;
   SE3 T_a = a.pose(t);
   T_a.translation().z() += lift_a_m;
   const SE3 T_b = b.pose(t);
@@ -179,10 +184,11 @@ double gap_m(const Body& a, const Body& b, Time t, double lift_a_m) {
       request.enable_nearest_points = false;
       fcl::DistanceResultd result;
       fcl::distance(&object_a, &object_b, request, result);
-      least_m = std::min(least_m, result.min_distance);
+      if (result.min_distance < least.distance_m)
+        least = {result.min_distance, static_cast<std::size_t>(std::max<std::intptr_t>(0, result.b2))};
     }
   }
-  return least_m;
+  return least;
 }
 
 /// From `when.begin` on, always as far as nothing can happen. Returns the time at which the bodies meet.
@@ -193,7 +199,7 @@ std::optional<Time> meeting(const Body& a, const Body& b, const Interval& when, 
         (a.pose(t).translation() - b.pose(t).translation()).norm() - a.radius_m - b.radius_m - lift_a_m;
     double free_m = between_m;
     if (free_m < 1) {
-      free_m = gap_m(a, b, t, lift_a_m);
+      free_m = nearest(a, b, t, lift_a_m).distance_m;
       if (free_m < touch_m) return t;
     }
     const double left_s = core::to_s(when.end - t);
@@ -264,8 +270,14 @@ class Swept {
   std::set<std::pair<long, long>> cells_;
 };
 
-/// The static triangles that actors come near to, in the world; null when there are none.
-Geometry static_shape(const scenes::Scene& scene, const Swept& swept) {
+/// The static triangles that actors come near to, in the world; no geometry when there are none.
+struct Scenery {
+  Geometry geometry;
+  std::vector<std::uint32_t> mesh;  ///< that each triangle is of
+};
+
+Scenery scenery_near(const scenes::Scene& scene, const Swept& swept) {
+  Scenery scenery;
   std::vector<Vector3d> vertices;
   std::vector<fcl::Triangle> triangles;
   for (const scenes::Instance& instance : scene.instances) {
@@ -280,9 +292,11 @@ Geometry static_shape(const scenes::Scene& scene, const Swept& swept) {
       const std::size_t first = vertices.size();
       for (const std::uint32_t v : corners) vertices.push_back(world[v]);
       triangles.emplace_back(first, first + 1, first + 2);
+      scenery.mesh.push_back(instance.mesh);
     }
   }
-  return triangles.empty() ? nullptr : Shapes::of_triangles(vertices, triangles);
+  if (!triangles.empty()) scenery.geometry = Shapes::of_triangles(vertices, triangles);
+  return scenery;
 }
 
 void check_against_what_stands(const scenes::Scene& scene, const std::vector<Body>& actors, Time end,
@@ -298,25 +312,27 @@ void check_against_what_stands(const scenes::Scene& scene, const std::vector<Bod
       const Reach reach = reach_of(actor, interval(k));
       swept.add(reach.centre_m, reach.radius_m);
     }
-  const Geometry shape = static_shape(scene, swept);
-  if (!shape) return;
-  const std::vector<Piece> pieces{{shape}};
+  const Scenery scenery = scenery_near(scene, swept);
+  if (!scenery.geometry) return;
+  const std::vector<Piece> pieces{{scenery.geometry}};
   const auto stands = [](Time) { return SE3(SE3::Identity()); };
   // Its radius holds everything: how near an actor is, only the triangles tell.
-  const Body scenery{"what stands there",
-                     nullptr,
-                     1e9,
-                     stands,
-                     [](Time, Time) { return 0.0; },
-                     [&]() -> const std::vector<Piece>& { return pieces; }};
+  const Body standing{"what stands there",
+                      nullptr,
+                      1e9,
+                      stands,
+                      [](Time, Time) { return 0.0; },
+                      [&]() -> const std::vector<Piece>& { return pieces; }};
   for (const Body& actor : actors) {
     for (std::int64_t k = 0; k < count; ++k) {
       const Interval when = interval(k);
       const bool rests =
           k > 0 && actor.acceleration_m_s2(when.begin, when.end) == 0 && speed_m_s(actor, when.begin) == 0;
       if (rests) continue;
-      if (const auto t = meeting(actor, scenery, when, lift_m))
-        refuse(actor, "something that stands", *t, scenario_name);
+      if (const auto t = meeting(actor, standing, when, lift_m)) {
+        const std::size_t triangle = nearest(actor, standing, *t, lift_m).of_second;
+        refuse(actor, "what stands there (" + scene.meshes[scenery.mesh.at(triangle)].name + ")", *t, scenario_name);
+      }
     }
   }
 }

@@ -91,7 +91,7 @@ TEST(Collisions, ActorsAgainstWhatStandsButNotAgainstTheGround) {
   EXPECT_EQ(error_of(scene), "");
   tests::add_instance(scene, tests::box({0.1, 0.1, 3}), tests::pose({5, 10.5, 0}));
   const std::string error = error_of(scene);
-  EXPECT_NE(error.find("something that stands"), std::string::npos) << error;
+  EXPECT_NE(error.find("runs into what stands there (box)"), std::string::npos) << error;
   EXPECT_NEAR(time_in(error), (20 - 1 - 5.1 - 0.02) / 2, 0.011);
 }
 
