@@ -1,6 +1,7 @@
-// glTF 2.0 and GLB. VTK loads buffers and builds the primitives; what it takes on trust (offsets and counts into the
-// buffers) is checked on the JSON first. Pictures, materials' looks, skins and animations do not matter to rays.
+// glTF 2.0 and GLB. VTK builds the primitives; what it takes on trust (offsets and counts into the buffers) is checked
+// on the JSON first. Pictures, materials' looks, skins and animations do not matter to rays.
 #include <fmt/format.h>
+#include <vtkBase64Utilities.h>
 #include <vtkGLTFDocumentLoader.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -35,10 +37,10 @@ std::uint32_t word_at(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-/// A document with the length of the binary chunk that a GLB carries.
+/// A document with the binary chunk that a GLB carries.
 struct Document {
   Json json;
-  std::uint64_t chunk_bytes = 0;
+  std::string chunk;
 };
 
 /// Header of 12 bytes, then chunks: length, type, content; JSON is the first.
@@ -55,9 +57,11 @@ Document split_glb(const std::string& bytes, const std::filesystem::path& file) 
   if (word_at(bytes, 16) != kJson || 20 + json_bytes > bytes.size()) fail("its first chunk is no JSON of its length");
   Document document;
   document.json = Json::parse(bytes.begin() + 20, bytes.begin() + 20 + static_cast<std::ptrdiff_t>(json_bytes));
-  if (28 + json_bytes <= bytes.size()) document.chunk_bytes = word_at(bytes, 20 + json_bytes);
-  if (document.chunk_bytes > 0 && 28 + json_bytes + document.chunk_bytes > bytes.size())
-    fail("its binary chunk is cut");
+  const std::uint64_t chunk_at = 28 + json_bytes;
+  if (chunk_at > bytes.size()) return document;
+  const std::uint64_t chunk_bytes = word_at(bytes, 20 + json_bytes);
+  if (chunk_at + chunk_bytes > bytes.size()) fail("its binary chunk is cut");
+  document.chunk = bytes.substr(chunk_at, chunk_bytes);
   return document;
 }
 
@@ -73,7 +77,7 @@ auto on_json(const std::filesystem::path& file, const F& f) {
 
 Document read_document(const std::filesystem::path& file) {
   const std::string bytes = core::read_file(file.string());
-  return on_json(file, [&] { return is_glb(file) ? split_glb(bytes, file) : Document{Json::parse(bytes), 0}; });
+  return on_json(file, [&] { return is_glb(file) ? split_glb(bytes, file) : Document{Json::parse(bytes), ""}; });
 }
 
 /// Names with %20 and the like written out.
@@ -92,35 +96,49 @@ bool is_data(const std::string& uri) {
   return uri.starts_with("data:");
 }
 
-/// Bytes that each buffer really has. Base64: four letters carry three bytes, less the padding.
-std::vector<std::uint64_t> buffer_sizes(const Document& document, const std::filesystem::path& file) {
-  std::vector<std::uint64_t> sizes;
+/// What a data: URI holds. Only base64, as the standard has it.
+std::string decoded(const std::string& uri, const std::filesystem::path& file) {
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string::npos || !uri.substr(0, comma).ends_with(";base64")) {
+    throw core::InputError(fmt::format("{}: the buffer in its text is not in base64", file.string()));
+  }
+  const auto* letters = reinterpret_cast<const unsigned char*>(uri.data()) + comma + 1;
+  const std::size_t length = uri.size() - comma - 1;
+  std::string bytes(length / 4 * 3, '\0');
+  bytes.resize(
+      vtkBase64Utilities::DecodeSafely(letters, length, reinterpret_cast<unsigned char*>(bytes.data()), bytes.size()));
+  return bytes;
+}
+
+std::filesystem::path part_of(const std::string& uri, const std::filesystem::path& file) {
+  const std::filesystem::path part = file.parent_path() / unescaped(uri);
+  if (std::filesystem::is_regular_file(part)) return part;
+  throw core::InputError(fmt::format("{}: its buffer {} is not there", file.string(), part.string()));
+}
+
+/// VTK goes on without a buffer that it cannot load, and reads beyond the others; it also takes %20 for itself. Hence
+/// buffers are loaded here: exactly the bytes promised.
+std::vector<std::vector<char>> load_buffers(const Document& document, const std::filesystem::path& file) {
+  std::vector<std::vector<char>> buffers;
   for (const Json& buffer : document.json.value("buffers", Json::array())) {
     const std::uint64_t promised = buffer.at("byteLength").get<std::uint64_t>();
-    std::uint64_t size = document.chunk_bytes;
-    std::string name = "the binary chunk";
-    if (buffer.contains("uri")) {
-      const std::string uri = buffer.at("uri").get<std::string>();
-      if (is_data(uri)) {
-        const std::size_t letters = uri.size() - std::min(uri.size(), uri.find(',') + 1);
-        size = letters / 4 * 3 - static_cast<std::size_t>(std::count(uri.end() - 2, uri.end(), '='));
-        name = "the buffer in its text";
-      } else {
-        const std::filesystem::path part = file.parent_path() / unescaped(uri);
-        if (!std::filesystem::is_regular_file(part)) {
-          throw core::InputError(fmt::format("{}: its buffer {} is not there", file.string(), part.string()));
-        }
-        size = std::filesystem::file_size(part);
-        name = part.string();
-      }
+    std::string bytes, name = "the binary chunk";
+    if (!buffer.contains("uri")) {
+      bytes = document.chunk;
+    } else if (const std::string uri = buffer.at("uri").get<std::string>(); is_data(uri)) {
+      bytes = decoded(uri, file);
+      name = "the buffer in its text";
+    } else {
+      name = part_of(uri, file).string();
+      bytes = core::read_file(name);
     }
-    if (size < promised) {
+    if (bytes.size() < promised) {
       throw core::InputError(
-          fmt::format("{}: {} has {} bytes of the {} promised", file.string(), name, size, promised));
+          fmt::format("{}: {} has {} bytes of the {} promised", file.string(), name, bytes.size(), promised));
     }
-    sizes.push_back(promised);
+    buffers.emplace_back(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(promised));
   }
-  return sizes;
+  return buffers;
 }
 
 std::uint64_t bytes_of_component(int type) {
@@ -140,7 +158,7 @@ std::uint64_t bytes_of_component(int type) {
 }
 
 /// An accessor's elements must lie in its view, and the view in its buffer.
-void check_accessor(const Json& json, const std::vector<std::uint64_t>& buffers, std::size_t index, bool vector,
+void check_accessor(const Json& json, const std::vector<std::vector<char>>& buffers, std::size_t index, bool vector,
                     const std::filesystem::path& file) {
   const auto fail = [&](const std::string& what) {
     throw core::InputError(fmt::format("{}: accessor {}: {}", file.string(), index, what));
@@ -172,13 +190,15 @@ void check_accessor(const Json& json, const std::vector<std::uint64_t>& buffers,
   if (count > 0 && offset + stride * (count - 1) + element > length) {
     fail(fmt::format("{} elements do not fit the {} bytes of its view", count, length));
   }
-  if (view.value("byteOffset", std::uint64_t{0}) > buffers[buffer] ||
-      view.value("byteOffset", std::uint64_t{0}) + length > buffers[buffer]) {
-    fail(fmt::format("its view ends beyond the {} bytes of buffer {}", buffers[buffer], buffer));
+  const std::uint64_t view_offset = view.value("byteOffset", std::uint64_t{0}), held = buffers[buffer].size();
+  if (view_offset > held || view_offset + length > held) {
+    fail(fmt::format("its view ends beyond the {} bytes of buffer {}", held, buffer));
   }
+  // VTK keeps offsets and lengths in an int, and takes one that does not fit for none.
+  if (view_offset + length > std::numeric_limits<std::int32_t>::max()) fail("lies beyond 2 GB of its buffer");
 }
 
-void check_primitive(const Json& json, const Json& primitive, const std::vector<std::uint64_t>& buffers,
+void check_primitive(const Json& json, const Json& primitive, const std::vector<std::vector<char>>& buffers,
                      const std::filesystem::path& file) {
   const Json& attributes = primitive.at("attributes");
   if (!attributes.contains("POSITION")) {
@@ -242,10 +262,11 @@ std::vector<std::size_t> roots_of(const Json& json, const std::filesystem::path&
   return roots;
 }
 
-Json checked_json(const std::filesystem::path& file) {
+/// The document, and the buffers' bytes, after everything that VTK takes on trust was found to be sound.
+Json checked_json(const std::filesystem::path& file, std::vector<std::vector<char>>& buffers) {
   Document document = read_document(file);
   on_json(file, [&] {
-    const std::vector<std::uint64_t> buffers = buffer_sizes(document, file);
+    buffers = load_buffers(document, file);
     for (const Json& mesh : document.json.value("meshes", Json::array())) {
       for (const Json& primitive : mesh.at("primitives")) check_primitive(document.json, primitive, buffers, file);
     }
@@ -302,18 +323,13 @@ void append_node(vtkGLTFDocumentLoader::Model& model, const Json& json, std::siz
 
 }  // namespace
 
-void check_gltf(const std::filesystem::path& file) {
-  checked_json(file);
-}
-
 std::vector<std::filesystem::path> gltf_parts(const std::filesystem::path& file) {
   const Document document = read_document(file);
   std::vector<std::filesystem::path> parts{file};
   on_json(file, [&] {
-    buffer_sizes(document, file);
     for (const Json& buffer : document.json.value("buffers", Json::array())) {
       const std::string uri = buffer.value("uri", "");
-      if (!uri.empty() && !is_data(uri)) parts.push_back(file.parent_path() / unescaped(uri));
+      if (!uri.empty() && !is_data(uri)) parts.push_back(part_of(uri, file));
     }
   });
   return parts;
@@ -340,14 +356,18 @@ void keep_positions_alone(vtkGLTFDocumentLoader::Model& model) {
 }  // namespace
 
 scenes::MeshFile read_gltf(const std::filesystem::path& file) {
-  const Json json = checked_json(file);
+  std::vector<std::vector<char>> buffers;
+  const Json json = checked_json(file, buffers);
   vtkNew<vtkGLTFDocumentLoader> loader;
   const VtkMessages messages;
-  std::vector<char> chunk;
   bool built = loader->LoadModelMetaDataFromFile(file.string());
-  if (built) keep_positions_alone(*loader->GetInternalModel());
-  built = built && (!is_glb(file) || loader->LoadFileBuffer(file.string(), chunk)) && loader->LoadModelData(chunk) &&
-          loader->BuildModelVTKGeometry();
+  if (built) {
+    vtkGLTFDocumentLoader::Model& model = *loader->GetInternalModel();
+    keep_positions_alone(model);
+    model.Buffers = std::move(buffers);
+    model.BufferMetaData = "[]";  // none left to load
+    built = loader->LoadModelData({}) && loader->BuildModelVTKGeometry();
+  }
   if (!built) {
     throw core::InputError(fmt::format("{}: cannot be read: {}", file.string(), messages.first()));
   }

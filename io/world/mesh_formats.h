@@ -18,14 +18,6 @@ scenes::MeshFile read_gltf(const std::filesystem::path& file);
 /// Throws core::InputError for a file that is no JSON, and for buffers that are not there.
 std::vector<std::filesystem::path> gltf_parts(const std::filesystem::path& file);
 
-/// Throws core::InputError unless the numbers and indices of an OBJ are sound, saying the line.
-void check_obj(const std::filesystem::path& file);
-/// Throws core::InputError when the file is shorter than a PLY's header promises.
-/// Returns the number of faces that it promises.
-std::size_t check_ply(const std::filesystem::path& file);
-/// Throws core::InputError unless accessors, views and buffers of a glTF fit into one another.
-void check_gltf(const std::filesystem::path& file);
-
 /// Appends polygons (cut into triangles) and strips. The names of triangles are the caller's business: `cell_of` gets
 /// the polygon that each triangle came from, unless it is nullptr. Throws core::InputError for an index out of range.
 void append_triangles(vtkPolyData& data, const std::filesystem::path& file, scenes::MeshFile& mesh,

@@ -6,13 +6,17 @@
 #include <vtkSTLReader.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <sstream>
 
 #include "core/error.h"
+#include "core/files.h"
 #include "io/world/mesh_formats.h"
+#include "io/world/text_words.h"
 #include "io/world/vtk_messages.h"
 
 namespace tarmac::io::world {
@@ -28,16 +32,30 @@ std::size_t size_of_type(const std::string& type) {
   return found == sizes.end() ? 0 : found->second;
 }
 
+/// One number, or a list of them behind their number.
+struct Property {
+  std::string name;
+  bool list = false, count_has_sign = false;
+  std::size_t count_bytes = 0, bytes = 0;  ///< of a list's number, and of one value, in a binary file
+};
+
 /// An element of a PLY's header: its count, and the fewest bytes that one takes in a binary file.
 struct Element {
   std::string name;
   std::uint64_t count = 0, bytes = 0;
-  std::vector<std::string> properties;
+  std::vector<Property> properties;
 };
 
+/// What VTK takes for the corners of a face.
+bool is_corners(const Element& element, const Property& property) {
+  return element.name == "face" && property.list &&
+         (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
 struct PlyHeader {
-  bool binary = false;
+  bool binary = false, big_endian = false;
   std::uint64_t size = 0;  ///< bytes up to the data
+  std::size_t lines = 0;   ///< likewise
   std::vector<Element> elements;
 };
 
@@ -53,13 +71,15 @@ void read_property(std::istringstream& words, PlyHeader& header, const std::file
   std::string items;
   if (list) words >> type >> items;
   words >> name;
-  if (size_of_type(type) == 0 || (list && size_of_type(items) == 0) || name.empty()) {
+  const bool counts = !type.starts_with("float") && type != "double";
+  if (size_of_type(type) == 0 || (list && (size_of_type(items) == 0 || !counts)) || name.empty()) {
     fail_ply(file, line, "a property needs a type such as float or `list uchar int`, and a name");
   }
   Element& element = header.elements.back();
-  element.properties.push_back(name);
+  element.properties.push_back({name, list, !type.starts_with('u'), list ? size_of_type(type) : 0,
+                                list ? size_of_type(items) : size_of_type(type)});
   // The shortest list that makes a face has three entries.
-  element.bytes += size_of_type(type) + (list && element.name == "face" ? 3 * size_of_type(items) : 0);
+  element.bytes += size_of_type(type) + (is_corners(element, element.properties.back()) ? 3 * size_of_type(items) : 0);
 }
 
 PlyHeader read_ply_header(const std::filesystem::path& file) {
@@ -79,6 +99,7 @@ PlyHeader read_ply_header(const std::filesystem::path& file) {
         fail_ply(file, line, fmt::format("'{}' is no format of PLY", kind));
       }
       header.binary = kind != "ascii";
+      header.big_endian = kind == "binary_big_endian";
     } else if (first == "element") {
       Element element;
       words >> element.name >> element.count;
@@ -87,7 +108,8 @@ PlyHeader read_ply_header(const std::filesystem::path& file) {
     } else if (first == "property") {
       read_property(words, header, file, line);
     } else if (first == "end_header") {
-      header.size = static_cast<std::uint64_t>(in.tellg());
+      header.size = in.eof() ? std::filesystem::file_size(file) : static_cast<std::uint64_t>(in.tellg());
+      header.lines = line;
       return header;
     }
   }
@@ -102,33 +124,155 @@ const Element& element_of(const PlyHeader& header, const char* name, const std::
       fmt::format("{}: there is no element '{}' in the header: this is no mesh", file.string(), name));
 }
 
-}  // namespace
-
-std::size_t check_ply(const std::filesystem::path& file) {
-  const PlyHeader header = read_ply_header(file);
+void check_properties(const PlyHeader& header, const std::filesystem::path& file) {
   const Element& vertex = element_of(header, "vertex", file);
   for (const char* axis : {"x", "y", "z"}) {
-    if (std::find(vertex.properties.begin(), vertex.properties.end(), axis) == vertex.properties.end()) {
+    const auto is_axis = [&](const Property& p) { return p.name == axis && !p.list; };
+    if (std::none_of(vertex.properties.begin(), vertex.properties.end(), is_axis)) {
       throw core::InputError(fmt::format("{}: vertices have no property '{}'", file.string(), axis));
     }
   }
   const Element& face = element_of(header, "face", file);
+  if (std::none_of(face.properties.begin(), face.properties.end(),
+                   [&](const auto& p) { return is_corners(face, p); })) {
+    throw core::InputError(
+        fmt::format("{}: faces have no list 'vertex_indices' (or 'vertex_index') in the header", file.string()));
+  }
   if (face.count == 0) throw core::InputError(fmt::format("{}: holds no triangles (element face 0)", file.string()));
+}
+
+void check_size(const PlyHeader& header, const std::filesystem::path& file) {
   std::uint64_t left = std::filesystem::file_size(file) - header.size;
   for (const Element& element : header.elements) {
     // In text, a number takes two bytes at least: a digit and a blank.
     const std::uint64_t least = header.binary ? element.bytes : 2 * element.properties.size();
     if (least == 0) continue;
-    if (element.count > left / least) {
+    // The last line may end without a line's end.
+    if (element.count > (left + (header.binary ? 0 : 1)) / least) {
       throw core::InputError(
           fmt::format("{}: is cut short: its header promises {} elements '{}' of at least {} bytes each, and {} bytes "
                       "are left for them",
                       file.string(), element.count, element.name, least, left));
     }
-    left -= element.count * least;
+    left -= std::min(left, element.count * least);
   }
-  return face.count;
 }
+
+constexpr std::uint64_t kMostCorners = 255;  ///< VTK counts them in a byte
+
+/// `where` is a function: it is called when something is wrong, not for each of millions of faces.
+template <class Where>
+void check_corners(std::uint64_t corners, const Where& where) {
+  if (corners >= 3 && corners <= kMostCorners) return;
+  throw core::InputError(fmt::format("{}: a face with {} corners; it needs 3, and {} are the most that are read",
+                                     where(), corners, kMostCorners));
+}
+
+/// One line of a text PLY holds one element.
+template <class Where>
+void check_text_line(std::string_view line, const Element& element, const Where& where) {
+  constexpr std::size_t kLongest = 4000;  // VTK cuts longer ones
+  if (line.size() > kLongest) {
+    throw core::InputError(fmt::format("{}: the line is longer than {} characters", where(), kLongest));
+  }
+  Words words(line);
+  const auto next = [&](const Property& property) {
+    const std::string_view word = words.next();
+    double value = 0;
+    if (parse(word, value)) return value;
+    throw core::InputError(fmt::format("{}: {} has '{}' for {}: a number is expected (one line holds one element)",
+                                       where(), element.name, word, property.name));
+  };
+  for (const Property& property : element.properties) {
+    if (!property.list) {
+      next(property);
+      continue;
+    }
+    const double count = next(property);
+    if (!(count >= 0 && count <= kLongest) || count != std::floor(count)) {
+      throw core::InputError(fmt::format("{}: a list cannot have {} entries", where(), count));
+    }
+    if (is_corners(element, property)) check_corners(static_cast<std::uint64_t>(count), where);
+    for (int k = 0; k < static_cast<int>(count); ++k) next(property);
+  }
+}
+
+void check_text(const PlyHeader& header, const std::string& bytes, const std::filesystem::path& file) {
+  std::size_t at = header.size, line = header.lines;
+  for (const Element& element : header.elements) {
+    for (std::uint64_t k = 0; k < element.count; ++k) {
+      ++line;
+      if (at >= bytes.size()) {
+        throw core::InputError(fmt::format("{}: is cut short: it ends after {} of {} elements '{}'", file.string(), k,
+                                           element.count, element.name));
+      }
+      const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
+      check_text_line(std::string_view(bytes).substr(at, end - at), element,
+                      [&] { return fmt::format("{}:{}", file.string(), line); });
+      at = end + 1;
+    }
+  }
+}
+
+/// A list's number; below zero, it comes out far too large for any file.
+std::uint64_t list_length(const char* at, const Property& list, bool big_endian) {
+  std::uint64_t value = 0;
+  for (std::size_t k = 0; k < list.count_bytes; ++k) {
+    value = value << 8 | static_cast<unsigned char>(at[big_endian ? k : list.count_bytes - 1 - k]);
+  }
+  const bool negative = list.count_has_sign && (value >> (8 * list.count_bytes - 1)) != 0;
+  return negative ? std::numeric_limits<std::uint64_t>::max() : value;
+}
+
+/// Bytes of the element at `at`; throws where it ends beyond the file.
+template <class Where>
+std::size_t size_of_element(const PlyHeader& header, const Element& element, const std::string& bytes, std::size_t at,
+                            const Where& where) {
+  const std::size_t begin = at;
+  const auto take = [&](std::uint64_t count, std::size_t each) {
+    if (count > (bytes.size() - at) / each) {
+      throw core::InputError(fmt::format("{}: is cut short, or a list's length is wrong", where()));
+    }
+    at += count * each;
+  };
+  for (const Property& property : element.properties) {
+    std::uint64_t count = 1;
+    if (property.list) {
+      take(1, property.count_bytes);
+      count = list_length(&bytes[at - property.count_bytes], property, header.big_endian);
+      if (is_corners(element, property)) check_corners(count, where);
+    }
+    take(count, property.bytes);
+  }
+  return at - begin;
+}
+
+void check_binary(const PlyHeader& header, const std::string& bytes, const std::filesystem::path& file) {
+  std::size_t at = header.size;
+  for (const Element& element : header.elements) {
+    for (std::uint64_t k = 0; k < element.count; ++k) {
+      at += size_of_element(header, element, bytes, at,
+                            [&] { return fmt::format("{}: {} {} (counted from 0)", file.string(), element.name, k); });
+    }
+  }
+}
+
+/// VTK's reader trusts the header and every list's length, and brings the program down where they are wrong.
+/// Returns the number of faces.
+std::size_t check_ply(const std::filesystem::path& file) {
+  const PlyHeader header = read_ply_header(file);
+  check_properties(header, file);
+  check_size(header, file);
+  const std::string bytes = core::read_file(file.string());
+  if (header.binary) {
+    check_binary(header, bytes, file);
+  } else {
+    check_text(header, bytes, file);
+  }
+  return element_of(header, "face", file).count;
+}
+
+}  // namespace
 
 scenes::MeshFile read_ply(const std::filesystem::path& file) {
   const std::size_t faces = check_ply(file);

@@ -48,7 +48,7 @@ Corners corners_of(const scenes::Scene& scene) {
 void expect_same(const Corners& a, const Corners& b, double tolerance_m = 1e-6) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t t = 0; t < a.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_LT((a[t][k] - b[t][k]).norm(), tolerance_m) << t << " " << k;
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_LE((a[t][k] - b[t][k]).norm(), tolerance_m) << t << " " << k;
   }
 }
 
@@ -218,6 +218,11 @@ std::string with(std::string text, const std::string& what, const std::string& b
   return text.replace(at, what.size(), by);
 }
 
+std::string with_byte(std::string text, std::size_t at, unsigned char byte) {
+  text.at(at) = static_cast<char>(byte);
+  return text;
+}
+
 tests::PlainMesh changed(std::size_t vertex, float x) {
   tests::PlainMesh m = tetrahedron();
   m.vertices[vertex].x() = x;
@@ -277,6 +282,17 @@ std::vector<Malformed> malformed() {
       {"text.ply", tests::ply_text(out_of_range()), {"face 2", "vertex 9"}},
       {"cut.ply", ply.substr(0, ply.size() - 9), {"is cut short", "'face'"}},
       {"cut_text.ply", tests::ply_text(m).substr(0, tests::ply_text(m).size() - 20), {"cut_text.ply"}},
+      {"half_line.ply", with(tests::ply_text(m), "3 1 2 3\n", "3 1\n"), {"half_line.ply:16", "for vertex_indices"}},
+      {"word.ply", with(tests::ply_text(m), "3 1 2 3\n", "3 1 two 3\n"), {"word.ply:16", "'two'"}},
+      {"two.ply", with(tests::ply_text(m), "3 1 2 3\n", "2 1 2\n"), {"two.ply:16", "2 corners"}},
+      {"many.ply", with(tests::ply_text(m), "3 1 2 3\n", "-3 1 2 3\n"), {"many.ply:16", "-3 entries"}},
+      {"long_list.ply", with_byte(ply, ply.size() - 13, 200), {"face 3", "is cut short, or a list's length is wrong"}},
+      {"below_zero.ply",
+       with_byte(with(ply, "list uchar", "list char"), ply.size() - 1 - 13, 0xFD),
+       {"face 3", "corners"}},
+      {"other_list.ply", with(ply, "vertex_indices", "vertex_indizes"), {"faces have no list 'vertex_indices'"}},
+      {"list_x.ply", with(ply, "property float x", "property list uchar float x"), {"no property 'x'"}},
+      {"real_list.ply", with(ply, "list uchar int", "list float int"), {"real_list.ply:8", "needs a type"}},
       {"huge.ply", with(ply, "element vertex 4", "element vertex 99999999999"), {"is cut short", "'vertex'"}},
       {"faceless.ply", tests::ply_text({m.vertices, {}}), {"holds no triangles"}},
       {"magic.ply", "not a ply\n", {"magic.ply:1", "begins with the word ply"}},
@@ -290,6 +306,8 @@ std::vector<Malformed> malformed() {
       {"km.obj", tests::obj_text(scaled(1e5f)), {"spans", "scale 1", "0.001 for millimetres"}},
       {"dust.obj", tests::obj_text(scaled(1e-4f)), {"less than a millimetre"}},
       {"json.gltf", "{\"asset\": ", {"no sound glTF"}},
+      {"letters.gltf", with(gltf, "base64,AAAA", "base64,*AAA"), {"the buffer in its text has", "96 promised"}},
+      {"plain.gltf", with(gltf, ";base64", ""), {"not in base64"}},
       {"buffer.gltf", tests::gltf_json(m, "gone.bin"), {"gone.bin is not there"}},
       {"view.gltf", with(gltf, "\"byteLength\": 48}", "\"byteLength\": 40}"), {"accessor 0", "do not fit"}},
       {"count.gltf", with(gltf, "\"count\": 12", "\"count\": 13"), {"accessor 1", "do not fit"}},
