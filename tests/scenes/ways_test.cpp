@@ -342,6 +342,23 @@ TEST(RoadTunnelGround, GradientAndHessianMatchCentralDifferencesAlsoInsideTheWal
   }
 }
 
+TEST(RoadTunnelGround, ClearanceSearchSeesWhatSpansTheRoadFromLandToLandAtItsHeightOverTheRoad) {
+  const RoadTunnelGround ground(RoadTunnelOptions{}, 1);
+  const double y = ground.layout().half_m + ground.layout().wall_m + 0.1;
+  const auto distance_to_lane = [&](double above_m) {
+    const double z = ground.height_m(0, 0) + above_m;
+    double nearest = 50;
+    for (const tests::Triangle& t : {tests::Triangle{Vector3d(-1, -y, z), Vector3d(1, -y, z), Vector3d(1, y, z)},
+                                     tests::Triangle{Vector3d(-1, -y, z), Vector3d(1, y, z), Vector3d(-1, y, z)}})
+      tests::for_each_outline_between(t, ground, 0.15, 2.6, [&](const std::vector<Vector2d>& outline) {
+        nearest = std::min(nearest, tests::distance_to_outline({0.3, 1.8}, outline));
+      });
+    return nearest;
+  };
+  EXPECT_EQ(distance_to_lane(2), 0) << "a beam in the way";
+  EXPECT_GT(distance_to_lane(5.2), ground.layout().half_m - 1.8 - 0.25) << "the ceiling";
+}
+
 TEST(RoadTunnelGround, RampsHaveTheirGradeTheirDepthAndTheirVerticalCurve) {
   RoadTunnelOptions options;
   options.undulation_mm = 0;
