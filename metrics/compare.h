@@ -55,9 +55,9 @@ PairedComparison turned_around(const PairedComparison& comparison);
 enum class Better : std::uint8_t { lower, higher, neither };
 Better better_of(const MetricEntry& metric);
 
-/// True of what tells of the drive and not of the method: the true path's length and the oracle's shares, of which
-/// neither way is better. They change with what is scored, which the coverage says; a comparison of methods leaves them
-/// out, unless asked for them by name.
+/// True of what tells of the drive and not of the method: the true path's length, the oracle's shares and its smallest
+/// eigenvalue, of which neither way is better. They change with what is scored, which the coverage says; a comparison
+/// of methods leaves them out, unless asked for them by name.
 bool describes_drive(const MetricEntry& metric);
 
 /// Every pair of estimators by one metric's headline row (causal, or final for a batch method); runs that are not ok

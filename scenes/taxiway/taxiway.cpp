@@ -20,6 +20,15 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
+/// Beyond a ditch's outer edge the rounding of its break fades by e every 0.4 m: from here on less than 0.1 mm is left
+/// of it, and cells of any size follow the ground.
+constexpr double level_beyond_outer_m = 2.5;
+/// Inside a bend: how far strips reach beyond the ditch, and how near to the bend's centre they may.
+constexpr double strip_beyond_outer_m = 8, strip_to_centre_m = 2;
+/// The plane region begins so much within the strip: more than the strip's edge bulges between the places of a cell at
+/// which reaches_beyond() looks, so that no gap is left.
+constexpr double overlap_m = 0.3;
+
 struct Site {
   const TaxiwayOptions& options;
   const TaxiwayLayout& layout;
@@ -30,13 +39,29 @@ struct Site {
   double length_m() const { return layout.line().length_m(); }
 };
 
+/// Whether a cell has a place farther to the left than d_m; `middle_d_m` is that of its middle. Looks at corners and
+/// middles of edges.
+bool reaches_beyond(const CentreLine& line, double d_m, double middle_d_m, const Vector2d& from, const Vector2d& to) {
+  const Vector2d half = 0.5 * (to - from);
+  if (middle_d_m > d_m) return true;
+  if (middle_d_m + half.norm() < d_m) return false;
+  for (const double x : {-1.0, 0.0, 1.0}) {
+    for (const double y : {-1.0, 0.0, 1.0}) {
+      if (line.project(from + half + Vector2d(x * half.x(), y * half.y())).d_m > d_m) return true;
+    }
+  }
+  return false;
+}
+
 /// Pavement, and grass in strips beside it as far as strips reach; inside a bend the rest of the grass is a plane
 /// region.
 void add_surfaces(Assembly& a, const Site& site) {
   const TaxiwaySection& section = site.layout.section();
   const bool bend = site.layout.bend_end_m() > site.layout.bend_begin_m();
   const double right = site.right_edge_m() - site.options.grass_m;
-  const double left = bend ? section.outer_m + 3 : section.shoulder_m + site.options.grass_m;
+  const double left =
+      bend ? std::min(section.outer_m + strip_beyond_outer_m, site.options.turn_radius_m - strip_to_centre_m)
+           : section.shoulder_m + site.options.grass_m;
   const CentreLine& line = site.layout.line();
   const StripMesher strips(site.ground, line, 0, site.length_m(), right, left);
   MeshBuilder pavement("pavement"), grass("grass");
@@ -59,13 +84,14 @@ void add_surfaces(Assembly& a, const Site& site) {
         high = high.cwiseMax(line.place(s, d));
       }
     }
-    add_ground_region(grass, site.ground, low, high, {}, [&](const Vector2d& from, const Vector2d& to) {
-      // All that the strip does not reach, and up to a cell's diagonal of what it does: the two lie on each other
-      // there.
+    // Cells that straddle the strip's edge lie on it with the rest; none of them reaches the ditch.
+    const MeshTolerance tolerance{.max_cell_m = (left - overlap_m - section.outer_m - level_beyond_outer_m) /
+                                                std::numbers::sqrt2};
+    add_ground_region(grass, site.ground, low, high, tolerance, [&](const Vector2d& from, const Vector2d& to) {
       const CentreLine::Place place = line.project(0.5 * (from + to));
       const double half_m = 0.5 * (to - from).norm();
-      return place.d_m > left - half_m && place.d_m < reach + half_m && place.s_m > -half_m &&
-             place.s_m < site.length_m() + half_m;
+      return place.d_m < reach + half_m && place.s_m > -half_m && place.s_m < site.length_m() + half_m &&
+             reaches_beyond(line, left - overlap_m, place.d_m, from, to);
     });
   }
   a.put(a.mesh(std::move(pavement).build()), Label::pavement);
@@ -224,7 +250,7 @@ TaxiwayOptions read(const core::ConfigNode& node) {
   at_most("longitudinal_slope_percent", options.longitudinal_slope_percent, code.longitudinal_slope_percent);
   at_most("transverse_slope_percent", options.transverse_slope_percent, code.transverse_slope_percent);
   if (options.shape == "straight") return options;
-  const double needed = taxiway_section(code).outer_m + 5;
+  const double needed = taxiway_section(code).outer_m + strip_beyond_outer_m;
   if (options.turn_radius_m < needed)
     node.fail_at("turn_radius_m", "the ditch inside the bend needs a radius of at least " +
                                       std::to_string(static_cast<int>(std::ceil(needed))) + " m with code letter " +

@@ -215,7 +215,7 @@ class KerbSide {
     const double off = 0.5 * (draw() - 0.5), yaw = 0.04 * (draw() - 0.5);
     if (!taken) return;
     const Vector2d p =
-        side.start + (along_m + off) * side.ahead + (options_->sidewalk_m + 0.5 * l::parking_m + 0.05) * side.out();
+        side.start + (along_m + off) * side.ahead + (options_->sidewalk_m + 0.5 * l::parking_m + 0.01) * side.out();
     // Cars stand the way traffic goes on their side of the street: it keeps right, and the houses are to the left.
     assembly_->stand(car, Label::vehicle, p.x(), p.y(), side.heading_rad() + pi + yaw);
   }

@@ -21,6 +21,7 @@ SEES = {
     "estimators": ["core"],
     "io/sensor": ["core"],
     "io/world": ["core", "scenes"],
+    "io/exr": ["core", "scenes", "sim/truth"],  # a picture of a sweep shows its truth too
     "metrics": ["core", "scenes", "sim/truth", "sim/raycast"],
     "scenarios": ["core"],
     "reports": ["core", "scenes", "metrics"],
@@ -38,9 +39,15 @@ HEAVY = [
     (re.compile(r"vtk\w+(\.h|/)"), "VTK", ["reports", "io/world"]),
     (re.compile(r"ceres/"), "Ceres", ["estimators"]),
     (re.compile(r"(pcl|pcl-\d)/"), "PCL", ["estimators"]),
-    (re.compile(r"(OpenEXR|Imath|Imf)"), "OpenEXR", ["io/world"]),
+    (re.compile(r"(OpenEXR|Imath|Imf)"), "OpenEXR", ["io/exr"]),
     (re.compile(r"sqlite3"), "SQLite", ["scenarios"]),
 ]
+# Headers that several sources of one part share and nobody else may include: they may name what sources may.
+PRIVATE = {
+    "reports/stills_cameras.h": "reports/stills",
+    "reports/stills_meshes.h": "reports/stills",
+    "reports/stills_state.h": "reports/stills",
+}
 SOURCES_ONLY = [
     (re.compile(r"vtk\w+(\.h|/)"), "VTK"),
     (re.compile(r"yaml-cpp/"), "yaml-cpp"),
@@ -107,8 +114,10 @@ def check_include(root, name, quote, target, known):
             if library in brought and not any(under(name, folder) for folder in folders):
                 yield f"brings in {library}, which may be named in {', '.join(folders)} only"
     for pattern, library in SOURCES_ONLY:
-        if pattern.match(target) and name.endswith(".h"):
+        if pattern.match(target) and name.endswith(".h") and name not in PRIVATE:
             yield f"{library} belongs into a .cpp file: it is too heavy for a header"
+    if target in PRIVATE and not name.startswith(PRIVATE[target]):
+        yield f"{target} is private to {PRIVATE[target]}*"
     ours = layer_of(target) is not None
     if quote == "<":
         if ours and (root / target).exists():

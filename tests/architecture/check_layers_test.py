@@ -52,7 +52,7 @@ WRONG = [
     ("VTK in a header", {"reports/a.h": "#include <vtkActor.h>\n"}, "reports/a.h:1: ", "VTK belongs into a .cpp"),
     ("Ceres", {"metrics/a.cpp": "#include <ceres/ceres.h>\n"}, "metrics/a.cpp:1: ", "Ceres may be named in estimators"),
     ("PCL", {"core/a.cpp": "#include <pcl/point_types.h>\n"}, "core/a.cpp:1: ", "PCL may be named in estimators"),
-    ("OpenEXR", {"sim/a.cpp": "#include <OpenEXR/ImfRgba.h>\n"}, "sim/a.cpp:1: ", "OpenEXR may be named in io/world"),
+    ("OpenEXR", {"sim/a.cpp": "#include <OpenEXR/ImfRgba.h>\n"}, "sim/a.cpp:1: ", "OpenEXR may be named in io/exr"),
     ("SQLite", {"tools/tarmac/a.cpp": "#include <sqlite3.h>\n"}, "tools/tarmac/a.cpp:1: ",
      "SQLite may be named in scenarios"),
     ("SQLite in a header", {"scenarios/a.h": "#include <sqlite3.h>\n"}, "scenarios/a.h:1: ", "SQLite belongs into a .cpp"),

@@ -1,4 +1,4 @@
-#include "io/world/exr/range_image.h"
+#include "io/exr/range_image.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "tests/support/temporary_folder.h"
 
 namespace tarmac::io {
 namespace {
@@ -59,11 +60,6 @@ Sweep some_sweep(bool twice) {
 
 class RangeImages : public testing::Test {
  protected:
-  RangeImages() : folder_(fs::path(testing::TempDir()) / "tarmac_range_images") {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~RangeImages() override { fs::remove_all(folder_); }
   std::string complaint(const fs::path& file) const {
     try {
       read_range_image(file);
@@ -72,7 +68,8 @@ class RangeImages : public testing::Test {
     }
     return "";
   }
-  fs::path folder_;
+  const tests::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 std::vector<std::uint32_t> bits(const std::vector<float>& values) {

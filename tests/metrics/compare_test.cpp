@@ -212,7 +212,7 @@ TEST(DescribesDrive, IsTheTruePathAndTheOracleAlone) {
   for (const MetricEntry& metric : metrics())
     if (describes_drive(metric)) names.emplace_back(metric.name);
   EXPECT_EQ(names, (std::vector<std::string>{"path_length_m", "oracle_degenerate_percent",
-                                             "oracle_degenerate_12dof_percent"}));
+                                             "oracle_degenerate_12dof_percent", "oracle_lambda_min_6dof_median"}));
 }
 
 /// p of (a, b) is about 0.04: enough alone, not as the smallest of three.

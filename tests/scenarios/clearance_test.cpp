@@ -64,10 +64,10 @@ Nearest nearest(const scenes::Scene& scene, const Path& path) {
   for_each_static_triangle(
       scene, [](const scenes::Instance& i) { return !on_the_ground(i.label); },
       [&](const scenes::Instance& instance, const Triangle& t) {
-        const std::vector<Vector2d> outline = outline_between(t, *scene.ground, kLowM, kHighM);
-        if (outline.empty()) return;
-        const double distance = path.distance(outline);
-        if (distance < result.distance_m) result = {distance, scene.meshes[instance.mesh].name};
+        for_each_outline_between(t, *scene.ground, kLowM, kHighM, [&](const std::vector<Vector2d>& outline) {
+          const double distance = path.distance(outline);
+          if (distance < result.distance_m) result = {distance, scene.meshes[instance.mesh].name};
+        });
       });
   return result;
 }

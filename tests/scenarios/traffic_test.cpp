@@ -37,8 +37,8 @@ TEST_P(ShippedTraffic, RunsIntoNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, ShippedTraffic, testing::ValuesIn(scenarios::list_scenarios({TARMAC_SCENARIOS})),
-                         [](const auto& info) {
-                           std::string name = info.param.stem().string();
+                         [](const auto& scenario) {
+                           std::string name = scenario.param.stem().string();
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });

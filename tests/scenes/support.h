@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -37,11 +38,12 @@ void for_each_static_triangle(const scenes::Scene& scene, const Accept& accept, 
 }
 
 inline bool on_the_ground(scenes::Label label) {
-  return label == scenes::Label::pavement || label == scenes::Label::marking ||
-         label == scenes::Label::vegetation || label == scenes::Label::terrain;
+  return label == scenes::Label::pavement || label == scenes::Label::marking || label == scenes::Label::vegetation ||
+         label == scenes::Label::terrain;
 }
 
-/// The part of a triangle between two heights above the ground, as a polygon seen from above (empty: none).
+/// The part of a triangle between two heights above the ground, as a polygon seen from above (empty: none). The ground
+/// below it counts as a plane through its heights below the corners: see for_each_outline_between.
 inline std::vector<Eigen::Vector2d> outline_between(const Triangle& triangle, const scenes::Ground& ground,
                                                     double low_m, double high_m) {
   std::vector<Eigen::Vector3d> polygon;
@@ -59,6 +61,38 @@ inline std::vector<Eigen::Vector2d> outline_between(const Triangle& triangle, co
   std::vector<Eigen::Vector2d> outline;
   for (const Eigen::Vector3d& p : polygon) outline.emplace_back(p.x(), p.y());
   return outline;
+}
+
+/// Calls f(outline) for the parts of a triangle between two heights above the ground, whatever the ground does below
+/// it. A roof over a sunken road may have all its corners above the land beside the road: where the ground below
+/// differs from a plane by more than 2 cm, the triangle is halved until it does not, or is shorter than 0.25 m; so no
+/// part lies farther than that from where it belongs.
+template <class F>
+void for_each_outline_between(const Triangle& triangle, const scenes::Ground& ground, double low_m, double high_m,
+                              const F& f) {
+  constexpr double flat_m = 0.02, small_m = 0.25;
+  std::size_t longest = 0;
+  const auto length_m = [&](std::size_t k) { return (triangle[(k + 1) % 3] - triangle[k]).head<2>().norm(); };
+  for (const std::size_t k : {1, 2}) longest = length_m(k) > length_m(longest) ? k : longest;
+  const auto height_m = [&](const Eigen::Vector3d& p) { return ground.height_m(p.x(), p.y()); };
+  bool is_flat = length_m(longest) < small_m;
+  if (!is_flat) {
+    const std::array<double, 3> h{height_m(triangle[0]), height_m(triangle[1]), height_m(triangle[2])};
+    is_flat = std::abs(height_m((triangle[0] + triangle[1] + triangle[2]) / 3) - (h[0] + h[1] + h[2]) / 3) < flat_m;
+    for (std::size_t k = 0; k < 3 && is_flat; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      is_flat = std::abs(height_m((triangle[k] + triangle[next]) / 2) - (h[k] + h[next]) / 2) < flat_m;
+    }
+  }
+  if (is_flat) {
+    const std::vector<Eigen::Vector2d> outline = outline_between(triangle, ground, low_m, high_m);
+    if (!outline.empty()) f(outline);
+    return;
+  }
+  const Eigen::Vector3d &a = triangle[longest], &b = triangle[(longest + 1) % 3], &c = triangle[(longest + 2) % 3];
+  const Eigen::Vector3d middle = (a + b) / 2;
+  for_each_outline_between({a, middle, c}, ground, low_m, high_m, f);
+  for_each_outline_between({middle, b, c}, ground, low_m, high_m, f);
 }
 
 inline double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {

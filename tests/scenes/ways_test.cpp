@@ -176,15 +176,15 @@ TEST_P(EveryWay, LaneIsFree) {
   tests::for_each_static_triangle(
       scene(), [](const Instance& i) { return !follows_ground(i.label); },
       [&](const Instance& i, const tests::Triangle& t) {
-        const std::vector<Vector2d> outline = tests::outline_between(t, *scene().ground, 0.15, 2.6);
-        if (outline.empty()) return;
-        double size = 0;
-        for (const Vector2d& p : outline) size = std::max(size, (p - outline[0]).norm());
-        for (const Vector2d& p : line) {
-          if ((p - outline[0]).norm() - size > std::min(nearest, 4.0)) continue;
-          const double distance = tests::distance_to_outline(p, outline);
-          if (distance < nearest) nearest = distance, what = scene().meshes[i.mesh].name;
-        }
+        tests::for_each_outline_between(t, *scene().ground, 0.15, 2.6, [&](const std::vector<Vector2d>& outline) {
+          double size = 0;
+          for (const Vector2d& p : outline) size = std::max(size, (p - outline[0]).norm());
+          for (const Vector2d& p : line) {
+            if ((p - outline[0]).norm() - size > std::min(nearest, 4.0)) continue;
+            const double distance = tests::distance_to_outline(p, outline);
+            if (distance < nearest) nearest = distance, what = scene().meshes[i.mesh].name;
+          }
+        });
       });
   std::cout << GetParam().name << ": nearest " << nearest << " m " << what << "\n";
   EXPECT_GE(nearest, 1.5) << what;

@@ -7,7 +7,7 @@
 #include "core/chunk_file.h"
 #include "core/files.h"
 #include "core/recording.h"
-#include "io/world/exr/range_image.h"
+#include "io/exr/range_image.h"
 #include "sim/truth/ground_truth.h"
 #include "tools/tarmac/child.h"
 
@@ -143,7 +143,7 @@ TEST_F(ExportImages, WithoutPointTruthTheProgramSaysHowToAskForIt) {
 TEST_F(ExportImages, SimulateSaysWhatItTakesOnTheDisk) {
   EXPECT_THAT(tarmac({"simulate", "short.yaml", "-o", "disk", "--jobs", "2"}),
               testing::Pair(0, AllOf(HasSubstr("disk: about"), HasSubstr("are free"))));
-  EXPECT_THAT(tarmac({"simulate", "short.yaml", "-o", "big", "--seed", "1..1000", "--set", "duration_s=86400"}),
+  EXPECT_THAT(tarmac({"simulate", "short.yaml", "-o", "big", "--seed", "1..1000", "--set", "duration_s=36000"}),
               testing::Pair(2, AllOf(HasSubstr("are needed"), HasSubstr("--force"))));
   EXPECT_FALSE(fs::exists(path("big")));
 }

@@ -8,7 +8,7 @@
 #include "core/chunk_file.h"
 #include "core/error.h"
 #include "core/recording.h"
-#include "io/world/exr/range_image.h"
+#include "io/exr/range_image.h"
 #include "sim/lidar/firing_grid.h"
 #include "sim/rig_options.h"
 #include "sim/truth/ground_truth.h"

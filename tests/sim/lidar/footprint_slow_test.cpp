@@ -53,7 +53,7 @@ TEST(AdaptiveFootprint, GivesTheFullOnesSweepsOfTheStandButForAFewBeamsInAThousa
   const NoiseOptions quiet{
       .range_scale = 0, .channel_bias_scale = 0, .quantisation = false, .dropout = false, .intensity = false};
   core::SE3 T_body_lidar = core::SE3::Identity();
-  T_body_lidar.translation() = {1.2, 0, 2};
+  T_body_lidar.translation() = Eigen::Vector3d(1.2, 0, 2);
   const auto simulator = [&](const char* footprint) {
     Requests requests;
     requests.point_truth = true;

@@ -278,6 +278,7 @@ TEST_F(MultiLidar, KissIcpFollowsTheMergedSweeps) {
 class Listener : public estimators::Estimator {
  public:
   explicit Listener(std::vector<std::pair<std::uint16_t, std::int64_t>>& heard) : heard_(heard) {}
+  using Estimator::add;
   estimators::SweepOutcome add(const LidarSweep& sweep) override {
     heard_.emplace_back(sweep.sensor, sweep.index);
     EXPECT_TRUE(sweep.point_sensor.empty());

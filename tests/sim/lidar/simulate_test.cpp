@@ -120,8 +120,12 @@ TEST_F(Simulate, GivesTheSameRecordingAndTruthAtAnyNumberOfThreadsWithEverything
     EXPECT_EQ(points.label.size(), read.sweep(k).size());
     for (std::size_t i = 0; i < points.label.size(); ++i) {
       kinds.insert(points.kind[i]);
-      if (points.kind[i] == truth::ReturnKind::self) EXPECT_EQ(points.label[i], scenes::Label::own_body);
-      if (points.kind[i] == truth::ReturnKind::noise) EXPECT_EQ(points.label[i], scenes::Label::none);
+      if (points.kind[i] == truth::ReturnKind::self) {
+        EXPECT_EQ(points.label[i], scenes::Label::own_body);
+      }
+      if (points.kind[i] == truth::ReturnKind::noise) {
+        EXPECT_EQ(points.label[i], scenes::Label::none);
+      }
     }
   }
   for (const auto kind : {truth::ReturnKind::self, truth::ReturnKind::noise, truth::ReturnKind::transmitted,
@@ -144,7 +148,9 @@ TEST_F(Simulate, StoresPointTruthOnRequestOnlyAndRecordsTheSame) {
     const Eigen::Vector3f n(points.normal_x[i], points.normal_y[i], points.normal_z[i]);
     EXPECT_NEAR(n.norm(), 1, 1e-5);
     EXPECT_GT(points.cos_incidence[i], 0);
-    if (points.label[i] == scenes::Label::pavement) EXPECT_NEAR(n.z(), 1, 1e-5);
+    if (points.label[i] == scenes::Label::pavement) {
+      EXPECT_NEAR(n.z(), 1, 1e-5);
+    }
   }
 }
 

@@ -11,7 +11,7 @@
 #include <functional>
 
 #include "core/error.h"
-#include "io/world/exr/range_image.h"
+#include "io/exr/range_image.h"
 
 namespace tarmac::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/world/exr/range_image.h"
+#include "io/exr/range_image.h"
 
 #include <fmt/format.h>
 
