@@ -31,15 +31,9 @@ void set_lane(LaneFrames& frames, std::size_t lane, const Frame& frame) {
   for (int k = 0; k < 3; ++k) frames.row[9 + k][lane] = frame.p[k];
 }
 
-struct Entries {
-  double value[12];
-};
-
-Entries entries_of(const Frame& frame) {
-  Entries e;
-  for (int k = 0; k < 9; ++k) e.value[k] = frame.R(k / 3, k % 3);
-  for (int k = 0; k < 3; ++k) e.value[9 + k] = frame.p[k];
-  return e;
+void entries_of(const Frame& frame, double* entries) {
+  for (int k = 0; k < 9; ++k) entries[k] = frame.R(k / 3, k % 3);
+  for (int k = 0; k < 3; ++k) entries[9 + k] = frame.p[k];
 }
 
 TARMAC_VECTOR_LOOP void blend(const double* __restrict first, const double* __restrict change,
@@ -47,10 +41,6 @@ TARMAC_VECTOR_LOOP void blend(const double* __restrict first, const double* __re
   for (int k = 0; k < 12; ++k)
     for (std::size_t lane = 0; lane < tile; ++lane) row[k][lane] = first[k] + share[lane] * change[k];
 }
-
-struct LaneRays {
-  alignas(64) double ox[tile], oy[tile], oz[tile], dx[tile], dy[tile], dz[tile];
-};
 
 /// R^T (o - p) and R^T d.
 TARMAC_VECTOR_LOOP void turn_rays(const LaneRays& world, const double (*__restrict f)[tile], RTCRay16& local) {
@@ -197,8 +187,27 @@ Shade shade_at(const Corners& corners, double distance_m, double spare_m) {
 
 }  // namespace
 
-void cast_shades(const std::vector<MovingPart>& parts, const BatchBounds& batch, double reach_m,
-                 std::vector<Shade>& shades) {
+namespace {
+
+// 64 bins of the directions' height; what is steeper shares the first and the last.
+constexpr float z_bins_per_1 = 64, z_middle = 32;
+
+int z_bin(float z) {
+  return std::clamp(static_cast<int>(z * z_bins_per_1 + z_middle), 0, 63);
+}
+
+std::uint64_t z_bins_of(const Shade& shade) {
+  const int low = z_bin(shade.z_low), high = z_bin(shade.z_high);
+  return (~std::uint64_t{0} >> (63 - (high - low))) << low;
+}
+
+int sector_below(float angle) {
+  return static_cast<int>(std::floor(angle * (Shades::sectors / 4)));
+}
+
+}  // namespace
+
+void cast_shades(const std::vector<MovingPart>& parts, const BatchBounds& batch, double reach_m, Shades& shades) {
   shades.clear();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const MovingPart& part = parts[i];
@@ -207,10 +216,12 @@ void cast_shades(const std::vector<MovingPart>& parts, const BatchBounds& batch,
     double spare_m = batch.radius_m;
     const Corners corners = corners_of(part.bounds, frame, batch.centre_m);
     if (!part.track.still()) {
+      const double radius_m =
+          static_cast<double>(part.bounds.low.cwiseAbs().cwiseMax(part.bounds.high.cwiseAbs()).norm());
       double moved_m = 0;
       for (const double t_ns : {batch.t_first_ns, batch.t_last_ns}) {
-        const Corners then = corners_of(part.bounds, part.track.at(t_ns), batch.centre_m);
-        for (std::size_t k = 0; k < 8; ++k) moved_m = std::max(moved_m, (then.at[k] - corners.at[k]).norm());
+        const Frame then = part.track.at(t_ns);
+        moved_m = std::max(moved_m, (then.p - frame.p).norm() + (then.R - frame.R).norm() * radius_m);
       }
       // Between the middle and an end nothing is farther off the straight way than the bow of its acceleration; twice
       // that, since corners of the bounds may lie outside of the actor's sphere.
@@ -220,11 +231,44 @@ void cast_shades(const std::vector<MovingPart>& parts, const BatchBounds& batch,
     Shade shade = shade_at(corners, horizontal_distance(corners, frame), spare_m);
     if (static_cast<double>(shade.nearest_m) > reach_m) continue;
     shade.part = static_cast<std::uint32_t>(i);
-    shades.push_back(shade);
+    shade.z_bins = z_bins_of(shade);
+    const auto index = static_cast<std::uint32_t>(shades.all.size());
+    shades.all.push_back(shade);
+    const int first = shade.all_round ? 0 : sector_below(shade.angle + shade.angle_low);
+    const int last = shade.all_round
+                         ? Shades::sectors - 1
+                         : std::min(first + Shades::sectors - 1, sector_below(shade.angle + shade.angle_high));
+    for (int k = first; k <= last; ++k) {
+      const auto sector = static_cast<std::size_t>(((k % Shades::sectors) + Shades::sectors) % Shades::sectors);
+      shades.in_sector[sector].push_back(index);
+      shades.z_bins[sector] |= shade.z_bins;
+    }
   }
+  shades.seen_by.assign(shades.all.size(), 0);
+}
+
+void Shades::clear() {
+  all.clear();
+  for (auto& list : in_sector) list.clear();
+  z_bins.fill(0);
+  tile = 0;
 }
 
 namespace {
+TARMAC_VECTOR_LOOP void bins_of(const float* __restrict x, const float* __restrict y, const float* __restrict z,
+                                int* __restrict sector, int* __restrict bin) {
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < tile; ++k) {
+    const float size = (x[k] < 0 ? -x[k] : x[k]) + (y[k] < 0 ? -y[k] : y[k]);
+    const float a = y[k] / (size > 0 ? size : 1.0f);
+    const float angle = x[k] < 0 ? 2.0f - a : (a < 0 ? 4.0f + a : a);
+    const int s = static_cast<int>(angle * (Shades::sectors / 4));
+    sector[k] = s < Shades::sectors ? s : Shades::sectors - 1;
+    const int b = static_cast<int>(z[k] * z_bins_per_1 + z_middle);
+    bin[k] = b < 0 ? 0 : b > 63 ? 63 : b;
+  }
+}
+
 TARMAC_VECTOR_LOOP void diamond_angles(const float* __restrict x, const float* __restrict y, float* __restrict angle) {
 #pragma GCC ivdep
   for (std::size_t k = 0; k < tile; ++k) {
@@ -234,6 +278,28 @@ TARMAC_VECTOR_LOOP void diamond_angles(const float* __restrict x, const float* _
   }
 }
 }  // namespace
+
+void candidates_of(const RTCRay16& packed, const int* valid, Shades& shades, std::vector<std::uint32_t>& candidates) {
+  candidates.clear();
+  alignas(64) int sector[tile], bin[tile];
+  bins_of(packed.dir_x, packed.dir_y, packed.dir_z, sector, bin);
+  std::uint64_t sectors = 0, bins = 0;
+  for (std::size_t lane = 0; lane < tile; ++lane) {
+    const std::uint64_t counts = valid[lane] != 0 ? 1 : 0;
+    sectors |= counts << sector[lane];
+    bins |= counts << bin[lane];
+  }
+  const std::uint32_t number = ++shades.tile;
+  for (; sectors != 0; sectors &= sectors - 1) {
+    const auto k = static_cast<std::size_t>(__builtin_ctzll(sectors));
+    if ((shades.z_bins[k] & bins) == 0) continue;
+    for (const std::uint32_t index : shades.in_sector[k]) {
+      if ((shades.all[index].z_bins & bins) == 0 || shades.seen_by[index] == number) continue;
+      shades.seen_by[index] = number;
+      candidates.push_back(index);
+    }
+  }
+}
 
 TileView view_of(const RTCRay16& packed, const int* valid, const Rays& rays, const std::uint32_t* lanes) {
   alignas(64) float angles[tile];
@@ -264,33 +330,50 @@ TileView view_of(const RTCRay16& packed, const int* valid, const Rays& rays, con
   return view;
 }
 
-bool to_part(const MovingPart& part, const TileView& view, const Vector3d& base, const Rays& rays,
-             const std::uint32_t* lanes, const RTCRayHit16& world, RTCRayHit16& local, int* valid) {
-  LaneFrames frames;
-  const double span_ns = view.t_last_ns - view.t_first_ns;
-  alignas(64) double share[tile] = {};
-  LaneRays ray;
+void load_lanes(const TileView& view, const Vector3d& base, const Rays& rays, const std::uint32_t* lanes,
+                LaneRays& loaded) {
+  const double span_ns = view.t_last_ns - view.t_first_ns, per_ns = span_ns > 0 ? 1 / span_ns : 0;
   std::uint32_t used = lanes[0];
   for (std::size_t lane = 0; lane < tile; ++lane) {
     const std::uint32_t i = lanes[lane] == SweepTracer::no_ray ? used : lanes[lane];
     used = i;
-    ray.ox[lane] = base.x() + rays.ox[i], ray.oy[lane] = base.y() + rays.oy[i], ray.oz[lane] = base.z() + rays.oz[i];
-    ray.dx[lane] = rays.dx[i], ray.dy[lane] = rays.dy[i], ray.dz[lane] = rays.dz[i];
-    share[lane] = span_ns > 0 ? (rays.t_ns[i] - view.t_first_ns) / span_ns : 0;
+    loaded.ox[lane] = base.x() + rays.ox[i];
+    loaded.oy[lane] = base.y() + rays.oy[i];
+    loaded.oz[lane] = base.z() + rays.oz[i];
+    loaded.dx[lane] = rays.dx[i], loaded.dy[lane] = rays.dy[i], loaded.dz[lane] = rays.dz[i];
+    loaded.share[lane] = (rays.t_ns[i] - view.t_first_ns) * per_ns;
   }
+}
+
+namespace {
+
+void set_frames(const MovingPart& part, const TileView& view, TileFrames& frames) {
+  if (frames.t_first_ns == view.t_first_ns && frames.t_last_ns == view.t_last_ns) return;
+  if (part.track.still() && frames.t_first_ns >= 0) return;
+  entries_of(part.track.at(view.t_first_ns), frames.first);
+  std::fill_n(frames.change, 12, 0.0);
+  if (!part.track.still() && view.t_last_ns > view.t_first_ns) {
+    entries_of(part.track.at(view.t_last_ns), frames.change);
+    for (int k = 0; k < 12; ++k) frames.change[k] -= frames.first[k];
+  }
+  frames.t_first_ns = view.t_first_ns;
+  frames.t_last_ns = view.t_last_ns;
+}
+
+}  // namespace
+
+bool to_part(const MovingPart& part, Shade& shade, const TileView& view, const LaneRays& rays, const RTCRayHit16& world,
+             RTCRayHit16& local, int* valid) {
+  LaneFrames frames;
+  const double span_ns = view.t_last_ns - view.t_first_ns;
   if (part.track.still() || span_ns <= straight_ns) {
-    const Entries first = entries_of(part.track.at(view.t_first_ns));
-    Entries change{};
-    if (!part.track.still() && span_ns > 0) {
-      const Entries last = entries_of(part.track.at(view.t_last_ns));
-      for (int k = 0; k < 12; ++k) change.value[k] = last.value[k] - first.value[k];
-    }
-    blend(first.value, change.value, share, frames.row);
+    set_frames(part, view, shade.frames);
+    blend(shade.frames.first, shade.frames.change, rays.share, frames.row);
   } else {
     for (std::size_t lane = 0; lane < tile; ++lane)
-      set_lane(frames, lane, part.track.at(view.t_first_ns + share[lane] * span_ns));
+      set_lane(frames, lane, part.track.at(view.t_first_ns + rays.share[lane] * span_ns));
   }
-  turn_rays(ray, frames.row, local.ray);
+  turn_rays(rays, frames.row, local.ray);
   std::copy_n(world.ray.tfar, tile, local.ray.tfar);
   meet_bounds(local.ray, part.bounds.low.data(), part.bounds.high.data(), valid);
   int any = 0;

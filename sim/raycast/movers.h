@@ -35,6 +35,12 @@ struct TileView {
   float z_low = 0, z_high = 0;                     ///< of the unit directions
 };
 
+/// Rows of R, then p, at one time, and what they change by until another: poses of a tile's rays lie in between.
+struct TileFrames {
+  double t_first_ns = -1, t_last_ns = -1;  ///< of the tile that they were made for; many tiles share their times
+  double first[12] = {}, change[12] = {};
+};
+
 /// What a part hides from a batch of rays: outside of this no ray meets it.
 struct Shade {
   std::uint32_t part = 0;
@@ -42,7 +48,21 @@ struct Shade {
   float z_low = 0, z_high = 0;
   float nearest_m = 0;
   bool all_round = false;  ///< the rays start within it or beside it
+  std::uint64_t z_bins = 0;
+  TileFrames frames;
   bool covers(const TileView& view) const;
+};
+
+/// The shades of a batch, by 64 sectors of the plane.
+struct Shades {
+  static constexpr int sectors = 64;
+  std::vector<Shade> all;
+  std::array<std::vector<std::uint32_t>, sectors> in_sector;
+  std::array<std::uint64_t, sectors> z_bins{};  ///< of all shades of the sector
+  std::vector<std::uint32_t> seen_by;           ///< number of the last tile that looked at each
+  std::uint32_t tile = 0;
+  bool empty() const { return all.empty(); }
+  void clear();
 };
 
 /// Angle in the plane, 0 to 4 in the sense of atan2, monotone with it and much cheaper; a turn is 4.
@@ -56,15 +76,26 @@ struct BatchBounds {
 };
 
 /// Those parts that rays of the batch may meet within reach.
-void cast_shades(const std::vector<MovingPart>& parts, const BatchBounds& batch, double reach_m,
-                 std::vector<Shade>& shades);
+void cast_shades(const std::vector<MovingPart>& parts, const BatchBounds& batch, double reach_m, Shades& shades);
+
+/// Shades that the rays of a tile may lie in, judged by sectors and bins of height; each once.
+void candidates_of(const RTCRay16& packed, const int* valid, Shades& shades, std::vector<std::uint32_t>& candidates);
 
 /// `lanes` are indices into `rays`, `valid` tells which of them count.
 TileView view_of(const RTCRay16& packed, const int* valid, const Rays& rays, const std::uint32_t* lanes);
 
-/// Rays of a tile in a part's own frame, each at its own time. `valid` is cleared where a ray misses the part's bounds
-/// or has met something nearer; returns whether any is left.
-bool to_part(const MovingPart& part, const TileView& view, const Eigen::Vector3d& base, const Rays& rays,
-             const std::uint32_t* lanes, const RTCRayHit16& world, RTCRayHit16& local, int* valid);
+/// Rays of a tile as they are turned into one part's frame after the other.
+struct LaneRays {
+  alignas(64) double ox[SweepTracer::tile], oy[SweepTracer::tile], oz[SweepTracer::tile];
+  alignas(64) double dx[SweepTracer::tile], dy[SweepTracer::tile], dz[SweepTracer::tile];
+  alignas(64) double share[SweepTracer::tile];  ///< of the tile's time, 0 at its first ray
+};
+void load_lanes(const TileView& view, const Eigen::Vector3d& base, const Rays& rays, const std::uint32_t* lanes,
+                LaneRays& loaded);
+
+/// Rays in a part's own frame, each at its own time. `valid` is cleared where a ray misses the part's bounds or has met
+/// something nearer; returns whether any is left.
+bool to_part(const MovingPart& part, Shade& shade, const TileView& view, const LaneRays& rays, const RTCRayHit16& world,
+             RTCRayHit16& local, int* valid);
 
 }  // namespace tarmac::sim::raycast

@@ -1,5 +1,6 @@
 // Rays through Embree and what is made of its hits.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -116,8 +117,7 @@ static void take_over(const RTCRayHit16& local, const int* valid, std::uint32_t 
   }
 }
 
-void SweepTracer::State::cast_shades(const Rays& rays, std::span<const std::uint32_t> order,
-                                     std::vector<Shade>& shades) const {
+void SweepTracer::State::cast_shades(const Rays& rays, std::span<const std::uint32_t> order, Shades& shades) const {
   shades.clear();
   if (parts.empty()) return;
   Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -137,19 +137,29 @@ void SweepTracer::State::cast_shades(const Rays& rays, std::span<const std::uint
 }
 
 template <class Meet>
-void SweepTracer::State::meet_parts(const Rays& rays, std::span<const std::uint32_t> lanes,
-                                    const std::vector<Shade>& shades, RTCRayHit16& packet, const int* valid,
+void SweepTracer::State::meet_parts(const Rays& rays, std::span<const std::uint32_t> lanes, Shades& shades,
+                                    std::vector<std::uint32_t>& candidates, RTCRayHit16& packet, const int* valid,
                                     const Meet& meet) const {
-  const TileView view = view_of(packet.ray, valid, rays, lanes.data());
+  candidates_of(packet.ray, valid, shades, candidates);
+  if (candidates.empty()) return;
   float farthest = 0;
   for (std::size_t lane = 0; lane < tile; ++lane) farthest = std::max(farthest, packet.ray.tfar[lane]);
+  TileView view;
+  LaneRays loaded;
+  bool has_view = false, has_rays = false;
   RTCRayHit16 local;
   alignas(64) int inside[tile];
-  for (const Shade& shade : shades) {
-    if (shade.nearest_m > farthest || !shade.covers(view)) continue;
+  for (const std::uint32_t index : candidates) {
+    Shade& shade = shades.all[index];
+    if (shade.nearest_m > farthest) continue;
+    if (!has_view) view = view_of(packet.ray, valid, rays, lanes.data());
+    has_view = true;
+    if (!shade.covers(view)) continue;
+    if (!has_rays) load_lanes(view, base, rays, lanes.data(), loaded);
+    has_rays = true;
     std::copy_n(valid, tile, inside);
     const MovingPart& part = parts[shade.part];
-    if (!to_part(part, view, base, rays, lanes.data(), packet, local, inside)) continue;
+    if (!to_part(part, shade, view, loaded, packet, local, inside)) continue;
     meet(part, local, inside);
     take_over(local, inside, shade.part, packet);
   }
@@ -176,7 +186,8 @@ void SweepTracer::trace(const Rays& rays, std::span<const std::uint32_t> order, 
     // tfar now stands at the static hit: an actor replaces it only where it is nearer.
     if (!s.scratch.shades.empty())
       for (std::size_t k = 0; k < here; ++k)
-        s.meet_parts(rays, order.subspan((first + k) * tile, tile), s.scratch.shades, tiles[k].packet, tiles[k].valid,
+        s.meet_parts(rays, order.subspan((first + k) * tile, tile), s.scratch.shades, s.scratch.candidates,
+                     tiles[k].packet, tiles[k].valid,
                      [&](const MovingPart& part, RTCRayHit16& local, const int* valid) {
                        rtcIntersect16(valid, part.mesh, &context, &local);
                      });
@@ -253,7 +264,8 @@ PackedTiles SweepTracer::pack(const Rays& rays, std::span<const std::uint32_t> o
     state_->load(rays, order.subspan(k * tile, tile), p.tiles[k].packet, p.tiles[k].valid);
     for (const int valid : p.tiles[k].valid) p.rays += valid != 0;
   }
-  std::vector<Shade> shades;
+  Shades shades;
+  std::vector<std::uint32_t> candidates;
   state_->cast_shades(rays, order, shades);
   RTCIntersectContext context = coherent_context();
   for (std::size_t k = 0; k < p.tiles.size() && !shades.empty(); ++k) {
@@ -268,7 +280,7 @@ PackedTiles SweepTracer::pack(const Rays& rays, std::span<const std::uint32_t> o
       packed_part.mesh = part.mesh;
       rtcIntersect16(valid, part.mesh, &context, &local);
     };
-    state_->meet_parts(rays, order.subspan(k * tile, tile), shades, t.packet, t.valid, pack_part);
+    state_->meet_parts(rays, order.subspan(k * tile, tile), shades, candidates, t.packet, t.valid, pack_part);
   }
   packed.reset();
   return packed;
@@ -350,18 +362,26 @@ void SweepTracer::State::finish_static(const Rays& rays, Hits& hits) {
 
 void SweepTracer::State::finish_moving(const Rays& rays, Hits& hits) {
   const scenes::Scene& scene = *tracer->scene;
-  Frame T{Eigen::Matrix3d::Identity(), Vector3d::Zero()};
-  std::uint32_t part_of_T = no_ray;
-  std::int32_t t_of_T_ns = 0;
+  // Neighbours on an actor share their times, column by column: the last few frames serve most of them.
+  struct Kept {
+    std::uint32_t part = no_ray;
+    std::int32_t t_ns = 0;
+    Frame T{Eigen::Matrix3d::Identity(), Vector3d::Zero()};
+  };
+  std::array<Kept, 8> kept;
+  std::size_t oldest = 0;
+  const auto frame_at = [&](std::uint32_t part, std::int32_t t_ns) -> const Frame& {
+    for (const Kept& k : kept)
+      if (k.t_ns == t_ns && k.part == part) return k.T;
+    Kept& k = kept[oldest++ % kept.size()];
+    k = {part, t_ns, parts[part].track.at(t_ns)};
+    return k.T;
+  };
   for (const TraceScratch::Moving& met : scratch.moving) {
     const std::uint32_t i = met.ray;
     const MovingPart& part = parts[met.part];
     const scenes::Instance& instance = scene.instances[part.instance];
-    if (met.part != part_of_T || rays.t_ns[i] != t_of_T_ns) {
-      T = part.track.at(rays.t_ns[i]);
-      part_of_T = met.part;
-      t_of_T_ns = rays.t_ns[i];
-    }
+    const Frame& T = frame_at(met.part, rays.t_ns[i]);
     const TrianglePlane& plane = tracer->meshes[instance.mesh].planes[met.triangle];
     const Vector3d o(rays.ox[i], rays.oy[i], rays.oz[i]), d(rays.dx[i], rays.dy[i], rays.dz[i]);
     Vector3d n = T.R * plane.normal;

@@ -65,30 +65,23 @@ RTCScene Tracer::State::static_scene(const Cell& cell) {
   return built.get();
 }
 
-// An actor stays within the bow of its acceleration around the chord between its first and last position.
-bool Tracer::State::may_meet(const scenes::Actor& actor, Time begin, Time end, const Eigen::Vector3d& origin,
-                             double reach_m) const {
-  const Eigen::Vector3d p0 = actor.motion->T_world_actor(begin).translation();
-  const Eigen::Vector3d p1 = actor.motion->T_world_actor(end).translation();
-  const double T = core::to_s(end - begin);
-  const double bow = actor.motion->acceleration_bound_m_s2(begin, end, actor.radius_m) * T * T / 8;
+/// Exact poses at equidistant times over the sweep; one where the actor stands still, none where it is out of reach.
+std::vector<SE3> Tracer::State::knots(const scenes::Actor& actor, Time begin, Time end, const Vector3d& origin,
+                                      double reach_m, double acceleration_m_s2) const {
+  const SE3 first = actor.motion->T_world_actor(begin), last = actor.motion->T_world_actor(end);
+  const Vector3d p0 = first.translation(), p1 = last.translation();
+  // It stays within the bow of its acceleration around the chord between its first and last position.
+  const double T = core::to_s(end - begin), bow = acceleration_m_s2 * T * T / 8;
   const double radius = actor.radius_m + 0.5 * (p1 - p0).norm() + bow;
-  return (0.5 * (p0 + p1) - origin).norm() < reach_m + radius;
-}
-
-/// Exact poses at equidistant times over the sweep; one where the actor stands still.
-std::vector<SE3> Tracer::State::knots(const scenes::Actor& actor, Time begin, Time end,
-                                      double acceleration_m_s2) const {
-  int count = std::max(least_knots, motion_steps(acceleration_m_s2, end - begin));
+  if ((0.5 * (p0 + p1) - origin).norm() >= reach_m + radius) return {};
+  if (acceleration_m_s2 == 0 && last.matrix() == first.matrix()) return {first};
+  const int count = std::max(least_knots, motion_steps(acceleration_m_s2, end - begin));
   if (count > max_motion_steps)
     throw core::InputError(
         fmt::format("{}{}scene {}: actor {} needs {} motion steps in a sweep of {} s; at most {} are possible: let it "
                     "move more smoothly or sweep faster",
-                    actor.where, actor.where.empty() ? "" : ": ", scene->name, actor.name, count,
-                    core::to_s(end - begin), max_motion_steps));
-  std::vector<SE3> poses{actor.motion->T_world_actor(begin)};
-  const SE3 last = actor.motion->T_world_actor(end);
-  if (acceleration_m_s2 == 0 && last.matrix() == poses.front().matrix()) return poses;
+                    actor.where, actor.where.empty() ? "" : ": ", scene->name, actor.name, count, T, max_motion_steps));
+  std::vector<SE3> poses{first};
   for (int k = 1; k + 1 < count; ++k)
     poses.push_back(actor.motion->T_world_actor(begin + k * (end - begin) / (count - 1)));
   poses.push_back(last);
@@ -164,9 +157,9 @@ SweepTracer Tracer::sweep(Time begin, Time end, const Eigen::Vector3d& origin_wo
   const scenes::Scene& scene = *state_->scene;
   for (std::size_t a = 0; a < scene.actors.size(); ++a) {
     const scenes::Actor& actor = scene.actors[a];
-    if (!state_->may_meet(actor, begin, end, origin_world, reach_m)) continue;
     const double acceleration_m_s2 = actor.motion->acceleration_bound_m_s2(begin, end, actor.radius_m);
-    const std::vector<SE3> knots = state_->knots(actor, begin, end, acceleration_m_s2);
+    const std::vector<SE3> knots = state_->knots(actor, begin, end, origin_world, reach_m, acceleration_m_s2);
+    if (knots.empty()) continue;
     ++sweep.actors;
     for (const std::uint32_t i : state_->carried[a]) {
       const scenes::Instance& instance = scene.instances[i];

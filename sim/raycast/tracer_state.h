@@ -44,10 +44,8 @@ struct Tracer::State {
   std::map<Cell, EmbreeScene> static_scenes;  // built when a sweep first starts in the cell, kept
 
   RTCScene static_scene(const Cell& cell);
-  bool may_meet(const scenes::Actor& actor, core::Time begin, core::Time end, const Eigen::Vector3d& origin,
-                double reach_m) const;
   std::vector<core::SE3> knots(const scenes::Actor& actor, core::Time begin, core::Time end,
-                               double acceleration_m_s2) const;
+                               const Eigen::Vector3d& origin, double reach_m, double acceleration_m_s2) const;
 };
 
 /// One call's arrays, kept between calls.
@@ -64,7 +62,8 @@ struct TraceScratch {
   std::vector<Moving> moving;
   std::vector<std::uint32_t> relief_rays;
   ReliefBatch relief;
-  std::vector<Shade> shades;
+  Shades shades;
+  std::vector<std::uint32_t> candidates;
   void resize(std::size_t rays);
 };
 
@@ -81,12 +80,13 @@ struct SweepTracer::State {
 
   void set_up(RTCRayHit16& packet) const;
   void load(const Rays& rays, std::span<const std::uint32_t> lanes, RTCRayHit16& packet, int* valid) const;
-  void cast_shades(const Rays& rays, std::span<const std::uint32_t> order, std::vector<Shade>& shades) const;
+  void cast_shades(const Rays& rays, std::span<const std::uint32_t> order, Shades& shades) const;
   /// Calls meet(part, local packet, valid lanes) for every part that a tile's rays may meet, after what stands still
   /// has been met; it puts what it finds into the tile's packet.
   template <class Meet>
-  void meet_parts(const Rays& rays, std::span<const std::uint32_t> lanes, const std::vector<Shade>& shades,
-                  RTCRayHit16& packet, const int* valid, const Meet& meet) const;
+  void meet_parts(const Rays& rays, std::span<const std::uint32_t> lanes, Shades& shades,
+                  std::vector<std::uint32_t>& candidates, RTCRayHit16& packet, const int* valid,
+                  const Meet& meet) const;
   void keep(std::span<const std::uint32_t> lanes, const RTCRayHit16& packet, Hits& hits);
   void finish_static(const Rays& rays, Hits& hits);
   void finish_moving(const Rays& rays, Hits& hits);
