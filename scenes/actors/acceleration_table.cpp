@@ -38,6 +38,11 @@ AccelerationTable::Stretch AccelerationTable::sampled(const Pose& pose, const Co
     origin[k] = a.norm() / (sample_s * sample_s);
     rotation[k] = (w1 - w0).norm() / sample_s + std::max(w0.squaredNorm(), w1.squaredNorm());
   }
+  // Before t = 0 nobody asks, and an actor that is under way then has no pose: what comes after stands for it.
+  std::size_t whole = 1;
+  while (whole + 2 < count && first_s + static_cast<double>(whole - 1) * sample_s < 0) ++whole;
+  std::fill_n(origin.begin(), whole, origin[whole]);
+  std::fill_n(rotation.begin(), whole, rotation[whole]);
   Stretch stretch{span.begin_s, span.end_s, {}};
   for (std::size_t k = 2; k + 2 < count; k += samples_per_cell) {
     Cell cell{0, 0};

@@ -35,7 +35,9 @@ const ActorKind& actor_kind(const std::string& name) {
 void WayPoint::visit(core::OptionVisitor& v) {
   v("x_m", x_m, "world position");
   v("y_m", y_m, "world position");
-  v("at_s", at_s, "time at which it is passed (-1: not given). The first and the last one have one, or none has",
+  v("at_s", at_s,
+    "time at which it would be passed if speeds changed at once; changes of speed are centred on it (-1: not given). "
+    "The first and the last one have one, or none has",
     {.at_least = -1});
 }
 

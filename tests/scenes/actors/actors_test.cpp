@@ -40,7 +40,7 @@ const char* const one_of_each = R"(
   - {kind: fuel-truck, start: {x_m: 0, y_m: -50, heading_deg: 30}, path: [{straight_m: 110}], rest_s: 1, speed: [{to_m_s: 6, peak_m_s2: 1.5}]}
   - {kind: belt-loader, start: {x_m: 0, y_m: -60, heading_deg: 30}, path: [{straight_m: 20}, {turn_deg: 45, radius_m: 8, blend_m: 3}], rest_s: 1, speed: [{to_m_s: 2}]}
   - {kind: follow-me, start: {x_m: -100, y_m: -66}, path: [{straight_m: 90}, {turn_deg: 40, radius_m: 30, blend_m: 10}], rest_s: 1, speed: [{to_m_s: 8, peak_m_s2: 2}], stop_peak_m_s2: 2}
-  - {kind: vehicle, type: baggage-tractor, way_points: [{x_m: -50, y_m: 38, at_s: 5}, {x_m: 0, y_m: 38, at_s: 15}, {x_m: 0, y_m: 38, at_s: 20}, {x_m: 30, y_m: 20, at_s: 30}], stop_peak_m_s2: 2}
+  - {kind: vehicle, type: baggage-tractor, way_points: [{x_m: -50, y_m: 38, at_s: 7}, {x_m: 0, y_m: 38, at_s: 17}, {x_m: 0, y_m: 38, at_s: 22}, {x_m: 30, y_m: 20, at_s: 32}], stop_peak_m_s2: 2}
   - {kind: marshaller, start: {x_m: 3, y_m: 33, heading_deg: 180}, path: [{straight_m: 8}, {turn_deg: 90, radius_m: 0.8, blend_m: 0.6}, {straight_m: 4}], rest_s: 3, speed: [{to_m_s: 1.3, peak_m_s2: 0.8}], arms_raised_from_s: 16, arms_raised_until_s: 30}
   - {kind: accelerating-plane, position_m: [10, 20, 3], velocity_m_s: [1, 0, 0], acceleration_m_s2: [-0.6, 0.4, 0], size_m: [0.2, 6, 6], heading_deg: 20}
   - {kind: turning-box, position_m: [-10, 20, 3], velocity_m_s: [0, 2, 0], size_m: [4, 2, 3], turn_deg_s: 40, turn_deg_s2: 10}
@@ -147,6 +147,17 @@ TEST(Actors, WayPointsArePassedAtTheirTimes) {
   EXPECT_NEAR(x(16), 40, 1e-6);
   EXPECT_NEAR(x(25), 70, 1e-6);
   EXPECT_NEAR(x(60), 100, 1e-6);
+}
+
+TEST(Actors, UnderWayAtTheBeginningAreNotTakenForAJolt) {
+  const Scene scene =
+      cast("  - {kind: follow-me, start: {speed_m_s: 12}, path: [{straight_m: 400}], stop_peak_m_s2: 2}\n");
+  const Actor& actor = scene.actors[0];
+  EXPECT_GT((actor.motion->T_world_actor(time_from_s(1)).translation() -
+             actor.motion->T_world_actor(time_from_s(0)).translation())
+                .norm(),
+            10);
+  EXPECT_LT(actor.motion->acceleration_bound_m_s2(time_from_s(0), time_from_s(0.1), actor.radius_m), 20);
 }
 
 TEST(Actors, PathRoundsItsWayPointsAndEndsAtTheLast) {
