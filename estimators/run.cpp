@@ -245,9 +245,9 @@ RunResult run_estimator(const core::Recording& recording, const EstimatorEntry& 
     result.estimate.message = missing;
   } else {
     const bool merge = recording.rig().lidars.size() > 1 && !entry.raw_lidars;
-    const core::MergedSweeps merged(recording);
+    std::optional<core::MergedSweeps> merged;
     EstimatorContext seen = context;
-    if (merge) seen.rig = merged.rig();
+    if (merge) seen.rig = merged.emplace(recording).rig();
     const std::unique_ptr<Estimator> estimator = entry.make(options, seen);
     if (merge)
       result.log.push_back(
@@ -256,7 +256,7 @@ RunResult run_estimator(const core::Recording& recording, const EstimatorEntry& 
     try {
       Runner runner(entry, *estimator, context.diagnostics, recording.sweep_count(), progress, sink);
       if (merge)
-        runner.run(merged, result);
+        runner.run(*merged, result);
       else
         runner.run(recording, result);
     } catch (const EstimatorFailure& failure) {

@@ -53,7 +53,13 @@ PointLabels merged_labels(const std::vector<core::PointSource>& sources, const P
     merged.instance.push_back(labels.instance[source.point]);
     merged.moving.push_back(labels.moving[source.point]);
     merged.kind.push_back(labels.kind_of(source.point));
-    merged.t_ns.push_back(static_cast<std::int32_t>((labels.time(source.point) - merged.begin).count()));
+    const std::int64_t t_ns = (labels.time(source.point) - merged.begin).count();
+    if (t_ns != static_cast<std::int32_t>(t_ns))
+      throw core::InputError(
+          fmt::format("lidar{}: its true time is {:.3f} s away from the sweep that its stamps put it "
+                      "into: with clocks so far apart several LiDARs cannot be scored as one",
+                      source.lidar, 1e-9 * static_cast<double>(t_ns)));
+    merged.t_ns.push_back(static_cast<std::int32_t>(t_ns));
     merged.end = std::max(merged.end, labels.time(source.point));
   }
   return merged;

@@ -308,7 +308,11 @@ void check_stl(const std::filesystem::path& file) {
   std::memcpy(&facets, head + 80, 4);
   const bool whole = size >= kStlHeader && size == kStlHeader + kStlFacet * facets;
   if (whole && facets == 0) throw core::InputError(fmt::format("{}: holds no triangles", file.string()));
-  if (whole || std::strncmp(head, "solid", 5) == 0) return;
+  // Some binary files begin with 'solid' too: their headers hold bytes that no text has.
+  const bool text = std::strncmp(head, "solid", 5) == 0 && std::none_of(head, head + in.gcount(), [](char c) {
+                      return c == 0 || static_cast<unsigned char>(c) > 126;
+                    });
+  if (whole || text) return;
   throw core::InputError(
       fmt::format("{}: is neither a text STL (it does not begin with 'solid') nor a whole binary one: its header "
                   "promises {} triangles, which is a file of {} bytes, and it has {}",

@@ -42,7 +42,8 @@ class Crew {
   double draw() { return random_.uniform(t_.stand, next_++); }
   void chock(const LandingGear& gear, double x);
   void cone(double x, double y) {
-    put("cone", Label::cone, add_traffic_cone, x + 0.15 * jitter(), y + 0.15 * jitter(), pi * draw());
+    const double dx = jitter(), dy = jitter(), turn = draw();  // one after the other: arguments have no order
+    put("cone", Label::cone, add_traffic_cone, x + 0.15 * dx, y + 0.15 * dy, pi * turn);
   }
   /// Where the equipment that serves the holds ends, right of the aircraft.
   double loader_tail_m_ = 10;
@@ -128,19 +129,20 @@ void Crew::hold(const AircraftType& type) {
 void Crew::train(double x, double y, int carts) {
   if (!comes(0.8)) return;
   put("baggage_tractor", vehicle, add_baggage_tractor, x, y, quarter);
-  for (int k = 0; k < carts; ++k)
-    put("baggage_cart", ground_equipment, add_baggage_cart, x + 0.12 * jitter(), y - 4.2 - 4.1 * k,
-        quarter + 0.04 * jitter());
+  for (int k = 0; k < carts; ++k) {
+    const double aside = jitter(), turn = jitter();
+    put("baggage_cart", ground_equipment, add_baggage_cart, x + 0.12 * aside, y - 4.2 - 4.1 * k, quarter + 0.04 * turn);
+  }
 }
 
 void Crew::containers(double x, double y, int dollies) {
   for (int k = 0; k < dollies; ++k) {
     if (!comes(0.7)) continue;
     const bool loaded = draw() < 0.6;
+    const double aside = jitter(), turn = jitter();
     put(
         loaded ? "dolly_with_container" : "dolly", ground_equipment,
-        [&](MeshBuilder& b) { add_container_dolly(b, loaded); }, x + 0.12 * jitter(), y - 4.3 * k,
-        quarter + 0.04 * jitter());
+        [&](MeshBuilder& b) { add_container_dolly(b, loaded); }, x + 0.12 * aside, y - 4.3 * k, quarter + 0.04 * turn);
   }
 }
 
@@ -186,9 +188,10 @@ void Crew::passengers(const AircraftType& type) {
     const double share = (k + 0.5 + 0.3 * jitter()) / people;
     const bool walks = k % 2 == 1;
     const PersonPosture posture{.gait_phase_rad = walks ? 0.6 : 0, .gait = walks ? 0.8 : 0};
+    const double aside = jitter(), turn = jitter();
     props_.stand_mesh(
         walks ? "person_walking" : "person_standing", person, [&] { return make_person(posture); }, t_.frame,
-        foot_x - 0.6 - share * (way - 0.6), -door.x_m + 0.9 * jitter(), pi * (1 + 0.2 * jitter()));
+        foot_x - 0.6 - share * (way - 0.6), -door.x_m + 0.9 * aside, pi * (1 + 0.2 * turn));
   }
   if (!comes(0.6)) return;
   const bool wide = is_wide(type);
@@ -206,7 +209,8 @@ void Crew::staging() {
   const double x = t_.half_width_m - 3.2;
   int place = 0;
   const auto box = [&](const std::string& name, Label label, const Props::Build& build) {
-    put(name, label, build, x + 0.2 * jitter(), 0.5 - 4.4 * place++, quarter + 0.05 * jitter());
+    const double aside = jitter(), turn = jitter();
+    put(name, label, build, x + 0.2 * aside, 0.5 - 4.4 * place++, quarter + 0.05 * turn);
   };
   if (comes(0.5)) box("baggage_tractor", vehicle, add_baggage_tractor);
   for (int k = 0; k < 3; ++k) {

@@ -30,7 +30,8 @@ class Scatter {
     for (;;) {
       const bool near = draw() < 0.5;
       const double reach = near ? 60 : options_->half_size_m - 5;
-      const Vector2d p(reach * (2 * draw() - 1), reach * (2 * draw() - 1));
+      const double x = draw(), y = draw();
+      const Vector2d p(reach * (2 * x - 1), reach * (2 * y - 1));
       if (distance_m(p, track_) > options_->lane_m + radius_m) return p;
     }
   }

@@ -49,7 +49,8 @@ Vector3d crown_place(const TreeShape& s, Draws& draws) {
     return {r * std::cos(a), r * std::sin(a), s.crown_from_m + t * (s.height_m - s.crown_from_m)};
   }
   const double half = (s.height_m - s.crown_from_m) / 2;
-  const Vector3d d = draws.direction() * std::cbrt(draws.between(0.25, 1));
+  const Vector3d towards = draws.direction();
+  const Vector3d d = towards * std::cbrt(draws.between(0.25, 1));
   return {s.crown_radius_m * d.x(), s.crown_radius_m * d.y(), s.crown_from_m + half * (1 + d.z())};
 }
 
@@ -71,7 +72,9 @@ void add_tree(MeshBuilder& b, const TreeShape& s, std::uint64_t seed, int number
   b.use(foliage);
   for (int k = 0; k < s.leaves; ++k) {
     const Vector3d p = crown_place(s, draws);
-    add_leaf(b, p, draws.direction(), tau * draws.uniform(), s.leaf_m * draws.between(0.7, 1.3));
+    const Vector3d facing = draws.direction();  // one after the other: arguments have no order
+    const double turn = draws.uniform(), size = draws.between(0.7, 1.3);
+    add_leaf(b, p, facing, tau * turn, s.leaf_m * size);
   }
 }
 
@@ -118,7 +121,7 @@ void add_rock(MeshBuilder& b, double radius_m, std::uint64_t seed, int number) {
     const double number_of = 1.5 + 1.2 * n;
     waves.push_back({number_of * draws.direction(), tau * draws.uniform(), 0.22 / (1 + n)});
   }
-  const Vector3d stretch(draws.between(0.8, 1.3), draws.between(0.7, 1.1), draws.between(0.55, 0.95));
+  const Vector3d stretch{draws.between(0.8, 1.3), draws.between(0.7, 1.1), draws.between(0.55, 0.95)};
   b.use(rock);
   const std::size_t first = b.triangle_count();
   std::vector<std::uint32_t> v;

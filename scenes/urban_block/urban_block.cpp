@@ -187,7 +187,8 @@ class KerbSide {
     const double kerb = options_->sidewalk_m - 0.6;
     if (options_->tree_pitch_m > 0) {
       for (double s = 6; s + 5 < side.length_m; s += options_->tree_pitch_m) {
-        put(trees_[static_cast<std::size_t>(4 * draw())], Label::tree, side, s + 1.5 * draw(), kerb, 2 * pi * draw());
+        const double kind = draw(), along = draw(), turn = draw();  // one after the other: arguments have no order
+        put(trees_[static_cast<std::size_t>(4 * kind)], Label::tree, side, s + 1.5 * along, kerb, 2 * pi * turn);
       }
     }
     if (options_->lamp_pitch_m > 0) {
@@ -196,7 +197,8 @@ class KerbSide {
       }
     }
     put(sign_, Label::sign, side, 1.2, kerb, 0);
-    put(bin_, Label::other, side, 4.4 + 0.4 * draw(), kerb, 0.2 * draw());
+    const double bin_along = draw(), bin_turn = draw();
+    put(bin_, Label::other, side, 4.4 + 0.4 * bin_along, kerb, 0.2 * bin_turn);
     put(bench_, Label::other, side, 0.5 * side.length_m + 3 * draw(), kerb - 0.4, -0.5 * pi);
     for (int k = 0; k < 3; ++k) put(bollard_, Label::other, side, side.length_m - 0.8 - 1.2 * k, kerb + 0.3, 0);
   }

@@ -50,14 +50,15 @@ struct Surfaces {
   const double* t_m;
   const float *x, *y, *z, *nx, *ny, *nz, *facing;
   const std::uint32_t* instance;
+  const std::uint16_t* material;
 };
 
 Surfaces surfaces_of(const CentreField& f) {
-  return {f.t_m.data(), f.x.data(),  f.y.data(),      f.z.data(),       f.nx.data(),
-          f.ny.data(),  f.nz.data(), f.facing.data(), f.instance.data()};
+  return {f.t_m.data(), f.x.data(),  f.y.data(),      f.z.data(),        f.nx.data(),
+          f.ny.data(),  f.nz.data(), f.facing.data(), f.instance.data(), f.material.data()};
 }
 
-/// Both on one plane, or neither on anything.
+/// Both on one plane of one material, or neither on anything.
 inline bool agree(const Surfaces& s, std::size_t i, std::size_t j) {
   const float x = s.x[j] - s.x[i], y = s.y[j] - s.y[i], z = s.z[j] - s.z[i];
   const float off_i = std::abs(s.nx[i] * x + s.ny[i] * y + s.nz[i] * z);
@@ -66,8 +67,8 @@ inline bool agree(const Surfaces& s, std::size_t i, std::size_t j) {
   const float most = std::max(off_plane_m, off_plane_by_cosine_m * cosine);
   const float along = s.nx[i] * s.nx[j] + s.ny[i] * s.ny[j] + s.nz[i] * s.nz[j];
   const bool met_i = s.t_m[i] > 0, met_j = s.t_m[j] > 0;
-  const bool plane =
-      (s.instance[i] == s.instance[j]) & (along > parallel) & (off_i < most) & (off_j < most) & (cosine > least_cosine);
+  const bool plane = (s.instance[i] == s.instance[j]) & (s.material[i] == s.material[j]) & (along > parallel) &
+                     (off_i < most) & (off_j < most) & (cosine > least_cosine);
   return (met_i & met_j & plane) | (!met_i & !met_j);
 }
 

@@ -17,7 +17,7 @@ using raycast::SweepTracer;
 
 constexpr double light_m_per_ns = 0.299792458;
 constexpr double halo_within_m = 30;
-constexpr float halo_from_signal = 30;
+constexpr float halo_from_signal = 100;
 // Outer rays are traced in portions of a fixed size: which rays share a packet may decide a tie between two triangles.
 constexpr std::size_t split_rays = 1024;
 constexpr std::uint32_t halo_slot = 15;  // beyond what a footprint's rays can make

@@ -100,7 +100,8 @@ SweepSimulator::SweepSimulator(const Profile& profile, FiringTable firing, const
 
 raycast::SweepTracer SweepSimulator::tracer_for(const SweepSpan& span) const {
   const Vector3d origin = motion_->pose(span.begin) * mounting_.T_body_lidar.translation();
-  return tracer_->sweep(span.begin, span.end, origin, profile_.max_range_m + 1);
+  const Vector3d last = motion_->pose(span.end) * mounting_.T_body_lidar.translation();
+  return tracer_->sweep(span.begin, span.end, origin, profile_.max_range_m + 1 + (last - origin).norm());
 }
 
 SweepMotion SweepSimulator::motion_of(const SweepSpan& span) const {

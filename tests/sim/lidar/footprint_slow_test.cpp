@@ -43,7 +43,7 @@ Difference difference_of(const SimulatedSweep& a, const SimulatedSweep& full) {
 TEST(AdaptiveFootprint, GivesTheFullOnesSweepsOfTheStandButForAFewBeamsInAThousand) {
   const core::ConfigNode node = core::ConfigNode::parse(
       "scene: {kind: stand}\nmotion: {kind: drive, rest_s: 0, start: {x_m: 20, y_m: 38, heading_deg: 180}, path: "
-      "[{straight_m: 40}], speed: [{to_m_s: 6, peak_m_s2: 3}]}\n",
+      "[{straight_m: 40}], speed: [{to_m_s: 6, peak_m_s2: 3}], stop_peak_m_s2: 3}\n",
       "test.yaml");
   const auto scene = std::make_shared<const scenes::Scene>(scenes::make_scene(node.child("scene"), 1));
   const std::shared_ptr<const core::SmoothTrajectory> motion =
@@ -76,6 +76,7 @@ TEST(AdaptiveFootprint, GivesTheFullOnesSweepsOfTheStandButForAFewBeamsInAThousa
     EXPECT_LT(a.traced_rays, f.traced_rays / 2);
     EXPECT_LT(d.share(d.missing), 0.002);
     EXPECT_LT(d.share(d.over_range_step), 0.005);
+    EXPECT_LT(d.share(d.intensity), 0.01);
   }
 }
 
