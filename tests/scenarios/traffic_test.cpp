@@ -43,13 +43,15 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, ShippedTraffic, testing::ValuesIn(scenarios:
                            return name;
                          });
 
-TEST(Traffic, ABusOnTheVehiclesLaneIsRefusedWithItsLineItsTimeAndItsPlace) {
+TEST(Traffic, AFuelTruckThatStaysOnTheVehiclesLaneIsRefusedWithItsLineItsTimeAndItsPlace) {
   std::string text = core::read_file(std::filesystem::path(TARMAC_SCENARIOS) / "bus-and-fuel.yaml");
-  const std::size_t lane = text.find("y_m: -34.2");
-  ASSERT_NE(lane, std::string::npos);
-  text.replace(lane, 10, "y_m: -30.8");
+  const std::size_t truck = text.find("- kind: fuel-truck");
+  ASSERT_NE(truck, std::string::npos);
+  const std::size_t rest = text.find("rest_s: 4", truck);
+  ASSERT_NE(rest, std::string::npos);
+  text.replace(rest, 9, "rest_s: 400");
   const auto line =
-      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.rfind("- kind", lane)), '\n');
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(truck), '\n');
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "head-on.yaml";
   core::write_file(file, text);
@@ -59,7 +61,7 @@ TEST(Traffic, ABusOnTheVehiclesLaneIsRefusedWithItsLineItsTimeAndItsPlace) {
   } catch (const core::InputError& error) {
     const std::string message = error.what();
     EXPECT_TRUE(
-        message.starts_with(file.string() + ":" + std::to_string(line) + ": actor bus-1 runs into the ego vehicle"))
+        message.starts_with(file.string() + ":" + std::to_string(line) + ": actor fuel-truck-3 runs into the ego vehicle"))
         << message;
     EXPECT_NE(message.find(" s, near x "), std::string::npos) << message;
   }

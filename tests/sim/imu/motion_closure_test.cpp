@@ -121,10 +121,10 @@ TEST_P(CarriedOrFlying, ClosesByAFourthOrderRuleAndNotByEuler) {
               GetParam(), at_2000.position_m, at_2000.angle_deg, at_4000.position_m, at_4000.angle_deg,
               by_trapezoid.position_m, by_trapezoid.angle_deg);
   EXPECT_GT(at_2000.position_m / at_4000.position_m, 12) << "sixteen, in the limit";
-  EXPECT_LT(at_4000.position_m, 0.01);
+  EXPECT_LT(at_4000.position_m, 0.001);
   EXPECT_LT(at_4000.angle_deg, 0.001);
   EXPECT_GT(by_trapezoid.position_m, 10 * at_4000.position_m) << "a rule of lower order";
-  EXPECT_GT(integrate(*motion, 4000, Rule::euler).position_m, 0.01) << "the bound must tell a wrong rule";
+  EXPECT_GT(integrate(*motion, 4000, Rule::euler).position_m, 0.001) << "the bound must tell a wrong rule";
 }
 
 }  // namespace
