@@ -134,7 +134,7 @@ Image exhibit_picture(const Exhibit& exhibit, int width_px, int height_px) {
   Stills stills(*exhibit.scene, core::Time{});
   const Vector3d size = box_of(exhibit).sizes(), middle = box_of(exhibit).center();
   constexpr int gap = 16;
-  const double m_per_px = 1.04 * (size.x() + 2 * size.y()) / (width_px - 4 * gap);
+  const double m_per_px = 1.04 * (2 * size.x() + size.y()) / (width_px - 4 * gap);
   const Image outlines = beside({outline(stills, side_view(middle, m_per_px), size.x(), size.z()),
                                  outline(stills, front_view(middle, m_per_px), size.y(), size.z()),
                                  outline(stills, plan_view(middle, m_per_px), size.x(), size.y())},
