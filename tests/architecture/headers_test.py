@@ -18,7 +18,9 @@ def compiles_alone(compiler, flags, header):
 def main(arguments):
     compiler, root, folder, includes = arguments
     os.chdir(root)
-    flags = ["-I", root] + [flag for path in includes.split(";") if path for flag in ("-isystem", path)]
+    # The compiler looks into /usr/include by itself; named again it would come before the C++ library's own wrappers.
+    paths = dict.fromkeys(path for path in includes.split(";") if path and path != "/usr/include")
+    flags = ["-I", root] + [flag for path in paths for flag in ("-isystem", path)]
     headers = sorted(path.relative_to(root).as_posix() for path in pathlib.Path(root, folder).rglob("*.h"))
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         results = list(pool.map(lambda header: compiles_alone(compiler, flags, header), headers))
