@@ -1,7 +1,6 @@
 #include "sim/truth/excitation.h"
 
 #include <numbers>
-#include <optional>
 #include <utility>
 
 namespace tarmac::sim::truth {
@@ -15,10 +14,6 @@ Jet height_along(const scenes::Ground& ground, const Jet& x, const Jet& y) {
   const double z = ground.height_m(x.f, y.f, &g, &H);
   return {z, g.x() * x.d1 + g.y() * y.d1,
           g.x() * x.d2 + g.y() * y.d2 + H[0] * x.d1 * x.d1 + 2 * H[1] * x.d1 * y.d1 + H[2] * y.d1 * y.d1, 0};
-}
-
-bool stands(const Planar& p) {
-  return p.s.d1 == 0 && p.s.d2 == 0 && p.s.d3 == 0;
 }
 
 }  // namespace
@@ -65,28 +60,26 @@ void Excitation::add_ground(const Planar& p, std::array<Jet, 3>& wheels) const {
   wheels[roll] = wheels[roll] + (1 / (4 * half)) * (front_left - front_right + rear_left - rear_right);
 }
 
-Suspension solve_suspension(const Course& course, const Excitation& excitation, double end_s) {
-  const Excitation::Input begin = excitation.at(course.at(0));
+Suspension solve_suspension(std::shared_ptr<const Course> course, std::shared_ptr<const Excitation> excitation,
+                            double end_s, const Suspension::Visitor& visit) {
+  const Excitation::Input begin = excitation->at(course->at(0));
   std::array<double, 3> q, q_dot;
   for (int m = 0; m < 3; ++m) {
     q[m] = begin.wheels[m].f + begin.load[m].f;
     q_dot[m] = begin.wheels[m].d1 + begin.load[m].d1;
   }
-  // At rest nothing changes, and a drive has seconds of it: the last answer is kept while the vehicle stands.
-  std::optional<std::pair<double, std::array<Jet, 3>>> standing;
-  const auto forcing = [&](double t_s) {
-    const Planar p = course.at(t_s);
-    if (stands(p) && standing && standing->first == p.s.f) return standing->second;
-    const std::array<Jet, 3> F = excitation.forcing(p);
-    if (stands(p)) standing = {p.s.f, F};
-    return F;
+  const std::array<Suspension::Oscillator, 3> oscillators = excitation->oscillators();
+  const auto forcing = [course = std::move(course), excitation = std::move(excitation)](double t_s) {
+    return excitation->forcing(course->at(t_s));
   };
-  return Suspension(excitation.oscillators(), forcing, end_s, q, q_dot);
+  return Suspension(oscillators, forcing, end_s, q, q_dot, visit);
 }
 
-Suspension solve_surge(const Course& course, const Suspension::Oscillator& surge, double end_s) {
+Suspension solve_surge(std::shared_ptr<const Course> course, const Suspension::Oscillator& surge, double end_s) {
   const double w = 2 * std::numbers::pi * surge.frequency_hz;
-  const auto forcing = [&](double t_s) { return std::array<Jet, 3>{-derivative(course.at(t_s).v_m_s), Jet{}, Jet{}}; };
+  const auto forcing = [course = std::move(course)](double t_s) {
+    return std::array<Jet, 3>{-derivative(course->at(t_s).v_m_s), Jet{}, Jet{}};
+  };
   const Jet F = forcing(0)[0];
   return Suspension({surge, surge, surge}, forcing, end_s, {F.f / (w * w), 0, 0}, {F.d1 / (w * w), 0, 0});
 }

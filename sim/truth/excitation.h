@@ -36,11 +36,12 @@ class Excitation {
   std::array<Suspension::Oscillator, 3> oscillators_;
 };
 
-/// Heave, pitch and roll over [0, end_s], in balance at t = 0.
-Suspension solve_suspension(const Course& course, const Excitation& excitation, double end_s);
+/// Heave, pitch and roll over [0, end_s], in balance at t = 0. The answer goes on asking both when it is asked.
+Suspension solve_suspension(std::shared_ptr<const Course> course, std::shared_ptr<const Excitation> excitation,
+                            double end_s, const Suspension::Visitor& visit);
 
 /// How the body moves forward on its wheels, mode 0 of what is returned (the others are nothing): x'' + 2 zeta w x' +
 /// w^2 x = -a_forward. It is what jerks back when a hard stop ends.
-Suspension solve_surge(const Course& course, const Suspension::Oscillator& surge, double end_s);
+Suspension solve_surge(std::shared_ptr<const Course> course, const Suspension::Oscillator& surge, double end_s);
 
 }  // namespace tarmac::sim::truth

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "scenes/paths/quadrature.h"
+#include "sim/truth/block_table.h"
 
 namespace tarmac::sim::truth {
 
@@ -70,50 +73,104 @@ std::array<double, 8> hermite7(const NodeState& a, const NodeState& b) {
   return {d(c0), d(c1), d(c2), d(c3), d(c4), d(c5), d(c6), d(c7)};
 }
 
+using States = std::array<NodeState, 3>;
+
+constexpr std::size_t block_nodes = 256;
+/// 66 s or 13 MB. Sweeps, IMU and checks each go through the drive once: most drives are solved once for all of them.
+constexpr std::size_t blocks_in_memory = 256;
+
+/// Coefficients of x^k, x in [0, 1] over one interval.
+using Polynomial = std::array<double, 8>;
+using Block = std::vector<std::array<Polynomial, 3>>;
+
+Jet jet_of(const NodeState& s) {
+  return {static_cast<double>(s.q), static_cast<double>(s.d1), static_cast<double>(s.d2), static_cast<double>(s.d3)};
+}
+
 }  // namespace
 
-Suspension::Suspension(const std::array<Oscillator, 3>& modes, const Forcing& forcing, double end_s,
-                       const std::array<double, 3>& q, const std::array<double, 3>& q_dot) {
-  const std::array<Propagator, 3> propagators{Propagator(modes[0]), Propagator(modes[1]), Propagator(modes[2])};
-  std::array<NodeState, 3> state;
-  const std::array<Jet, 3> F_begin = forcing(0);
-  for (int m = 0; m < 3; ++m) state[m] = propagators[m].complete(q[m], q_dot[m], F_begin[m]);
-  const auto count = static_cast<std::size_t>(std::ceil(end_s / node_spacing_s)) + 1;
-  intervals_.resize(count);
-  for (std::size_t k = 0; k < count; ++k) {
+class Suspension::Solution {
+ public:
+  Solution(const std::array<Oscillator, 3>& modes, Forcing forcing, double end_s, const std::array<double, 3>& q,
+           const std::array<double, 3>& q_dot, const Visitor& visit)
+      : propagators_{Propagator(modes[0]), Propagator(modes[1]), Propagator(modes[2])},
+        forcing_(std::move(forcing)),
+        count_(static_cast<std::size_t>(std::ceil(end_s / node_spacing_s)) + 1),
+        blocks_(blocks_in_memory, [this](std::size_t index) {
+          States state = kept_[index];
+          return make(index, state, {});
+        }) {
+    States state;
+    const std::array<Jet, 3> F_begin = forcing_(0);
+    for (int m = 0; m < 3; ++m) state[m] = propagators_[m].complete(q[m], q_dot[m], F_begin[m]);
+    for (std::size_t index = 0; index * block_nodes < count_; ++index) {
+      kept_.push_back(state);
+      blocks_.put(index, std::make_shared<const Block>(make(index, state, visit)));
+    }
+  }
+
+  std::array<Jet, 3> at(double t_s) const {
+    const auto wanted = static_cast<std::size_t>(std::max(0.0, t_s / node_spacing_s));
+    const std::size_t k = std::min(wanted, count_ - 1);
+    const double x = t_s / node_spacing_s - static_cast<double>(k);
+    constexpr double r = 1 / node_spacing_s;
+    const std::shared_ptr<const Block> block = blocks_.get(k / block_nodes);
+    std::array<Jet, 3> result;
+    for (int m = 0; m < 3; ++m) {
+      const Polynomial& c = (*block)[k % block_nodes][m];
+      double f = 0, d1 = 0, d2 = 0, d3 = 0;  // d2 and d3 are collected divided by 2 and 6
+      for (int i = 7; i >= 0; --i) {
+        d3 = d3 * x + d2;
+        d2 = d2 * x + d1;
+        d1 = d1 * x + f;
+        f = f * x + c[i];
+      }
+      result[m] = {f, d1 * r, 2 * d2 * r * r, 6 * d3 * r * r * r};
+    }
+    return result;
+  }
+
+ private:
+  /// From node k to the node after it.
+  States next(std::size_t k, const States& state) const {
     const double begin_s = static_cast<double>(k) * node_spacing_s;
     std::array<std::array<Real, 3>, 3> F_inside;  // [mode][node]
     for (int j = 0; j < 3; ++j) {
-      const std::array<Jet, 3> F = forcing(begin_s + Gauss3::node[j] * node_spacing_s);
+      const std::array<Jet, 3> F = forcing_(begin_s + Gauss3::node[j] * node_spacing_s);
       for (int m = 0; m < 3; ++m) F_inside[m][j] = F[m].f;
     }
-    const std::array<Jet, 3> F_end = forcing(static_cast<double>(k + 1) * node_spacing_s);
-    for (int m = 0; m < 3; ++m) {
-      const NodeState next = propagators[m].next(state[m], F_inside[m], F_end[m]);
-      intervals_[k][m] = hermite7(state[m], next);
-      state[m] = next;
-    }
+    const std::array<Jet, 3> F_end = forcing_(static_cast<double>(k + 1) * node_spacing_s);
+    States result;
+    for (int m = 0; m < 3; ++m) result[m] = propagators_[m].next(state[m], F_inside[m], F_end[m]);
+    return result;
   }
-}
+
+  /// `state` is that of the block's first node, and becomes that of the next block's.
+  Block make(std::size_t index, States& state, const Visitor& visit) const {
+    const std::size_t first = index * block_nodes, end = std::min(first + block_nodes, count_);
+    Block result(end - first);
+    for (std::size_t k = first; k < end; ++k) {
+      if (visit) visit(static_cast<double>(k) * node_spacing_s, {jet_of(state[0]), jet_of(state[1]), jet_of(state[2])});
+      const States after = next(k, state);
+      for (int m = 0; m < 3; ++m) result[k - first][m] = hermite7(state[m], after[m]);
+      state = after;
+    }
+    return result;
+  }
+
+  std::array<Propagator, 3> propagators_;
+  Forcing forcing_;
+  std::size_t count_;         ///< of intervals
+  std::vector<States> kept_;  ///< at the first node of every block
+  BlockTable<Block> blocks_;
+};
+
+Suspension::Suspension(const std::array<Oscillator, 3>& modes, Forcing forcing, double end_s,
+                       const std::array<double, 3>& q, const std::array<double, 3>& q_dot, const Visitor& visit)
+    : solution_(std::make_shared<const Solution>(modes, std::move(forcing), end_s, q, q_dot, visit)) {}
 
 std::array<Jet, 3> Suspension::at(double t_s) const {
-  const auto wanted = static_cast<std::size_t>(std::max(0.0, t_s / node_spacing_s));
-  const std::size_t k = std::min(wanted, intervals_.size() - 1);
-  const double x = t_s / node_spacing_s - static_cast<double>(k);
-  constexpr double r = 1 / node_spacing_s;
-  std::array<Jet, 3> result;
-  for (int m = 0; m < 3; ++m) {
-    const Polynomial& c = intervals_[k][m];
-    double f = 0, d1 = 0, d2 = 0, d3 = 0;  // d2 and d3 are collected divided by 2 and 6
-    for (int i = 7; i >= 0; --i) {
-      d3 = d3 * x + d2;
-      d2 = d2 * x + d1;
-      d1 = d1 * x + f;
-      f = f * x + c[i];
-    }
-    result[m] = {f, d1 * r, 2 * d2 * r * r, 6 * d3 * r * r * r};
-  }
-  return result;
+  return solution_->at(t_s);
 }
 
 }  // namespace tarmac::sim::truth

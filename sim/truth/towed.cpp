@@ -16,12 +16,12 @@ using namespace core;
 /// The last link's axle. Its place follows from the tug's and the headings in closed form.
 class TowedCourse final : public Course {
  public:
-  TowedCourse(CoursePlan plan, Train train) : plan_(std::move(plan)), train_(std::move(train)) {
+  TowedCourse(std::shared_ptr<const CoursePlan> plan, Train train) : plan_(std::move(plan)), train_(std::move(train)) {
     for (const Train::Link& link : train_.links()) behind_m_ += link.hitch_m + link.length_m;
   }
 
   Planar at(double t_s) const override {
-    const Planar tug = axle_at(plan_, t_s);
+    const Planar tug = axle_at(*plan_, t_s);
     const std::array<Jet, Train::max_links> by_distance = train_.headings(tug.s.f);
     Planar p = tug;
     for (std::size_t i = 0; i < train_.links().size(); ++i) {
@@ -33,7 +33,7 @@ class TowedCourse final : public Course {
       p.x_m = p.x_m - link.length_m * p.direction.cos;
       p.y_m = p.y_m - link.length_m * p.direction.sin;
     }
-    const Jet ratio = train_.speed_ratio(plan_.path.heading(tug.s.f), by_distance);
+    const Jet ratio = train_.speed_ratio(plan_->path.heading(tug.s.f), by_distance);
     p.v_m_s = chain(ratio, tug.s) * tug.v_m_s;
     // What the road does to the trailer, the tug met the train's length before.
     p.s.f -= behind_m_;
@@ -41,7 +41,7 @@ class TowedCourse final : public Course {
   }
 
  private:
-  CoursePlan plan_;
+  std::shared_ptr<const CoursePlan> plan_;
   Train train_;
   double behind_m_ = 0;
 };
@@ -95,14 +95,16 @@ std::shared_ptr<const SmoothTrajectory> make_towed(const ConfigNode& node, Durat
                                                    std::shared_ptr<const scenes::Ground> ground, std::uint64_t seed) {
   const TowedOptions options = read_towed_options(node);
   constexpr double beyond_s = 2 * Suspension::node_spacing_s;
-  CoursePlan plan = plan_course(node.child("tug"), options.tug, to_s(duration), beyond_s, seed);
+  const auto plan =
+      std::make_shared<const CoursePlan>(plan_course(node.child("tug"), options.tug, to_s(duration), beyond_s, seed));
   std::vector<Train::Link> links;
   for (const LinkOptions& link : options.links) links.push_back({link.hitch_m, link.length_m});
   Train::Problem problem;
-  Train train(
-      links, [&](double s_m) { return plan.path.heading(s_m); }, plan.speed.at(to_s(duration) + beyond_s).f, problem);
+  const Train train(
+      links, [plan](double s_m) { return plan->path.heading(s_m); }, plan->speed.at(to_s(duration) + beyond_s).f,
+      problem);
   if (!problem.message.empty()) node.fail_at("links", problem.message);
-  return make_vehicle_body(node, std::make_unique<TowedCourse>(std::move(plan), std::move(train)),
+  return make_vehicle_body(node, std::make_unique<TowedCourse>(plan, train),
                            {options.road, options.bumps, options.suspension, options.vibration}, duration,
                            std::move(ground), seed);
 }

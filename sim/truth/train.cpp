@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "scenes/paths/quadrature.h"
+#include "sim/truth/block_table.h"
 
 namespace tarmac::sim::truth {
 
@@ -39,135 +41,193 @@ std::array<double, 8> hermite(const Jet& a, const Jet& b, double h) {
   return {d(c0), d(c1), d(c2), d(c3), d(c4), d(c5), d(c6), d(c7)};
 }
 
+using Angles = std::array<double, Train::max_links>;
+
+constexpr std::size_t block_nodes = 128;
+/// 164 m: a good while at any speed that a train drives at.
+constexpr std::size_t blocks_in_memory = 64;
+
+using Polynomial = std::array<double, 8>;
+using Block = std::vector<std::array<Polynomial, Train::max_links>>;
+
 }  // namespace
 
-Train::Train(const std::vector<Link>& links, const std::function<Jet(double)>& heading, double s_max_m,
-             Problem& problem)
-    : links_(links) {
-  const auto count = static_cast<std::size_t>(std::ceil(std::max(0.0, s_max_m) / node_spacing_m)) + 1;
-  const std::vector<Angles> coarse = solve(heading, node_spacing_m, count);
-  const std::vector<Angles> fine = solve(heading, node_spacing_m / 2, 2 * count);
-  std::vector<std::array<Jet, max_links>> nodes;
-  for (std::size_t k = 0; k <= count; ++k) {
-    const double s_m = static_cast<double>(k) * node_spacing_m;
-    const Jet tug = heading(s_m);
-    double before = tug.f;
+class Train::Solution {
+ public:
+  Solution(const std::vector<Link>& links, Heading heading, double s_max_m, Problem& problem)
+      : links_(links),
+        heading_(std::move(heading)),
+        count_(static_cast<std::size_t>(std::ceil(std::max(0.0, s_max_m) / node_spacing_m)) + 1),
+        blocks_(blocks_in_memory, [this](std::size_t index) { return block(index); }) {
+    Angles coarse;
+    coarse.fill(heading_(0).f);
+    Angles fine = coarse;
+    for (std::size_t k = 0; k <= count_; ++k) {
+      if (k % block_nodes == 0) kept_.push_back(fine);
+      for (std::size_t i = 0; i < links_.size(); ++i)
+        certificate_rad_ = std::max(certificate_rad_, std::abs(fine[i] - coarse[i]));
+      if (problem.message.empty()) watch_folds(static_cast<double>(k) * node_spacing_m, fine, problem);
+      coarse = step(k, node_spacing_m, coarse);
+      fine = next(k, fine);
+    }
+    if (certificate_rad_ > certified_rad && problem.message.empty()) {
+      problem = {
+          0, fmt::format("the train's equations are solved only to {:.1e} rad on this path: turns are too sudden for "
+                         "links this short; lengthen blend_m or the links",
+                         certificate_rad_)};
+    }
+  }
+
+  const std::vector<Link>& links() const { return links_; }
+  double certificate_rad() const { return certificate_rad_; }
+
+  std::array<Jet, max_links> headings(double s_m) const {
+    const auto wanted = static_cast<std::size_t>(std::max(0.0, s_m / node_spacing_m));
+    const std::size_t k = std::min(wanted, count_ - 1);
+    const double x = s_m / node_spacing_m - static_cast<double>(k);
+    constexpr double r = 1 / node_spacing_m;
+    const std::shared_ptr<const Block> block = blocks_.get(k / block_nodes);
+    std::array<Jet, max_links> result{};
+    for (std::size_t link = 0; link < links_.size(); ++link) {
+      const Polynomial& c = (*block)[k % block_nodes][link];
+      double f = 0, d1 = 0, d2 = 0, d3 = 0;  // d2 and d3 are collected divided by 2 and 6
+      for (int i = 7; i >= 0; --i) {
+        d3 = d3 * x + d2;
+        d2 = d2 * x + d1;
+        d1 = d1 * x + f;
+        f = f * x + c[static_cast<std::size_t>(i)];
+      }
+      result[link] = {f, d1 * r, 2 * d2 * r * r, 6 * d3 * r * r * r};
+    }
+    return result;
+  }
+
+ private:
+  void watch_folds(double s_m, const Angles& theta, Problem& problem) const {
+    double before = heading_(s_m).f;
     for (std::size_t i = 0; i < links_.size(); ++i) {
-      certificate_rad_ = std::max(certificate_rad_, std::abs(fine[2 * k][i] - coarse[k][i]));
-      const double fold = std::abs(before - fine[2 * k][i]);
+      const double fold = std::abs(before - theta[i]);
       if (fold > largest_fold_rad && problem.message.empty()) {
         problem = {s_m,
                    fmt::format("link {} folds by {:.0f} deg at {:.1f} m along the tug's path (more than 80 deg: it "
                                "jack-knifes): wider turns, or shorter links",
                                i + 1, fold * 180 / std::numbers::pi, s_m)};
       }
-      before = fine[2 * k][i];
+      before = theta[i];
     }
-    nodes.push_back(complete(tug, fine[2 * k]));
   }
-  if (certificate_rad_ > certified_rad && problem.message.empty()) {
-    problem = {0,
-               fmt::format("the train's equations are solved only to {:.1e} rad on this path: turns are too sudden for "
-                           "links this short; lengthen blend_m or the links",
-                           certificate_rad_)};
-  }
-  intervals_.resize(count);
-  for (std::size_t k = 0; k < count; ++k)
-    for (std::size_t i = 0; i < links_.size(); ++i)
-      intervals_[k][i] = hermite(nodes[k][i], nodes[k + 1][i], node_spacing_m);
-}
 
-Train::Angles Train::slopes(const Jet& tug, const Angles& theta) const {
-  Angles slope{};
-  double psi = tug.f, turn = tug.d1, v = 1;
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    const auto [a, L] = links_[i];
-    const double s = std::sin(psi - theta[i]), c = std::cos(psi - theta[i]);
-    slope[i] = (v * s - a * turn * c) / L;
-    v = v * c + a * turn * s;
-    psi = theta[i], turn = slope[i];
+  Angles slopes(const Jet& tug, const Angles& theta) const {
+    Angles slope{};
+    double psi = tug.f, turn = tug.d1, v = 1;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const auto [a, L] = links_[i];
+      const double s = std::sin(psi - theta[i]), c = std::cos(psi - theta[i]);
+      slope[i] = (v * s - a * turn * c) / L;
+      v = v * c + a * turn * s;
+      psi = theta[i], turn = slope[i];
+    }
+    return slope;
   }
-  return slope;
-}
 
-std::vector<Train::Angles> Train::solve(const std::function<Jet(double)>& heading, double step_m,
-                                        std::size_t steps) const {
-  Angles theta;
-  theta.fill(heading(0).f);
-  std::vector<Angles> result{theta};
-  result.reserve(steps + 1);
-  for (std::size_t k = 0; k < steps; ++k) {
+  /// The k-th step of this length.
+  Angles step(std::size_t k, double step_m, const Angles& from) const {
     std::array<Jet, 3> tug;
     std::array<Angles, 3> slope;
     for (int j = 0; j < 3; ++j) {
-      tug[j] = heading((static_cast<double>(k) + scenes::Gauss3::node[j]) * step_m);
-      slope[j] = slopes(tug[j], theta);
+      tug[j] = heading_((static_cast<double>(k) + scenes::Gauss3::node[j]) * step_m);
+      slope[j] = slopes(tug[j], from);
     }
     // Each round gains a factor of step / length: a dozen leave nothing but rounding.
     for (int round = 0; round < 12; ++round) {
       for (int j = 0; j < 3; ++j) {
-        Angles stage = theta;
+        Angles stage = from;
         for (std::size_t i = 0; i < links_.size(); ++i)
           for (int l = 0; l < 3; ++l) stage[i] += step_m * gauss.a[j][l] * slope[l][i];
         slope[j] = slopes(tug[j], stage);
       }
     }
+    Angles theta = from;
     for (std::size_t i = 0; i < links_.size(); ++i)
       for (int j = 0; j < 3; ++j) theta[i] += step_m * scenes::Gauss3::weight[j] * slope[j][i];
-    result.push_back(theta);
+    return theta;
   }
-  return result;
+
+  /// From node k to the node after it, in two steps.
+  Angles next(std::size_t k, const Angles& from) const {
+    return step(2 * k + 1, node_spacing_m / 2, step(2 * k, node_spacing_m / 2, from));
+  }
+
+  std::array<Jet, max_links> complete(const Jet& tug, const Angles& theta) const {
+    std::array<Jet, max_links> jets{};
+    Jet psi = tug, v{1};
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const auto [a, L] = links_[i];
+      Jet& angle = jets[i];
+      angle.f = theta[i];
+      const Jet turn = derivative(psi);
+      SinCos fold;
+      // Each pass gives one derivative more.
+      for (int pass = 0; pass < 3; ++pass) {
+        fold = sin_cos(psi - angle);
+        const Jet slope = (1 / L) * (v * fold.sin - a * (turn * fold.cos));
+        angle.d1 = slope.f;
+        if (pass > 0) angle.d2 = slope.d1;
+        if (pass > 1) angle.d3 = slope.d2;
+      }
+      fold = sin_cos(psi - angle);
+      v = v * fold.cos + a * (turn * fold.sin);
+      psi = angle;
+    }
+    return jets;
+  }
+
+  Block block(std::size_t index) const {
+    const std::size_t first = index * block_nodes, end = std::min(first + block_nodes, count_);
+    const auto node = [&](std::size_t k, const Angles& theta) {
+      return complete(heading_(static_cast<double>(k) * node_spacing_m), theta);
+    };
+    Block result(end - first);
+    Angles theta = kept_[index];
+    std::array<Jet, max_links> before = node(first, theta);
+    for (std::size_t k = first; k < end; ++k) {
+      theta = next(k, theta);
+      const std::array<Jet, max_links> after = node(k + 1, theta);
+      for (std::size_t i = 0; i < links_.size(); ++i)
+        result[k - first][i] = hermite(before[i], after[i], node_spacing_m);
+      before = after;
+    }
+    return result;
+  }
+
+  std::vector<Link> links_;
+  Heading heading_;
+  std::size_t count_;         ///< of intervals
+  std::vector<Angles> kept_;  ///< at the first node of every block
+  double certificate_rad_ = 0;
+  BlockTable<Block> blocks_;
+};
+
+Train::Train(const std::vector<Link>& links, Heading heading, double s_max_m, Problem& problem)
+    : solution_(std::make_shared<const Solution>(links, std::move(heading), s_max_m, problem)) {}
+
+const std::vector<Train::Link>& Train::links() const {
+  return solution_->links();
 }
 
-std::array<Jet, Train::max_links> Train::complete(const Jet& tug, const Angles& theta) const {
-  std::array<Jet, max_links> jets{};
-  Jet psi = tug, v{1};
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    const auto [a, L] = links_[i];
-    Jet& angle = jets[i];
-    angle.f = theta[i];
-    const Jet turn = derivative(psi);
-    SinCos fold;
-    // Each pass gives one derivative more.
-    for (int pass = 0; pass < 3; ++pass) {
-      fold = sin_cos(psi - angle);
-      const Jet slope = (1 / L) * (v * fold.sin - a * (turn * fold.cos));
-      angle.d1 = slope.f;
-      if (pass > 0) angle.d2 = slope.d1;
-      if (pass > 1) angle.d3 = slope.d2;
-    }
-    fold = sin_cos(psi - angle);
-    v = v * fold.cos + a * (turn * fold.sin);
-    psi = angle;
-  }
-  return jets;
+double Train::certificate_rad() const {
+  return solution_->certificate_rad();
 }
 
 std::array<Jet, Train::max_links> Train::headings(double s_m) const {
-  const auto wanted = static_cast<std::size_t>(std::max(0.0, s_m / node_spacing_m));
-  const std::size_t k = std::min(wanted, intervals_.size() - 1);
-  const double x = s_m / node_spacing_m - static_cast<double>(k);
-  constexpr double r = 1 / node_spacing_m;
-  std::array<Jet, max_links> result{};
-  for (std::size_t link = 0; link < links_.size(); ++link) {
-    const Polynomial& c = intervals_[k][link];
-    double f = 0, d1 = 0, d2 = 0, d3 = 0;  // d2 and d3 are collected divided by 2 and 6
-    for (int i = 7; i >= 0; --i) {
-      d3 = d3 * x + d2;
-      d2 = d2 * x + d1;
-      d1 = d1 * x + f;
-      f = f * x + c[static_cast<std::size_t>(i)];
-    }
-    result[link] = {f, d1 * r, 2 * d2 * r * r, 6 * d3 * r * r * r};
-  }
-  return result;
+  return solution_->headings(s_m);
 }
 
 Jet Train::speed_ratio(const Jet& tug_heading, const std::array<Jet, max_links>& headings) const {
   Jet psi = tug_heading, v{1};
-  for (std::size_t i = 0; i < links_.size(); ++i) {
+  for (std::size_t i = 0; i < links().size(); ++i) {
     const SinCos fold = sin_cos(psi - headings[i]);
-    v = v * fold.cos + links_[i].hitch_m * (derivative(psi) * fold.sin);
+    v = v * fold.cos + links()[i].hitch_m * (derivative(psi) * fold.sin);
     psi = headings[i];
   }
   return v;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,28 +31,25 @@ class Train {
   static constexpr int max_links = 2;
   static constexpr double node_spacing_m = 0.02;
 
-  /// `heading` is the tug's [rad] by distance. All links begin in line with it. Covers [0, s_max].
-  Train(const std::vector<Link>& links, const std::function<Jet(double)>& heading, double s_max_m, Problem& problem);
+  /// The tug's [rad] by distance. Kept, and called from several threads.
+  using Heading = std::function<Jet(double s_m)>;
 
-  /// Headings of the links [rad], by the tug's distance.
+  /// All links begin in line with the tug. Covers [0, s_max]. Angles are kept every 128 nodes; what lies between is
+  /// made again when it is asked for, so that memory hardly grows with the way.
+  Train(const std::vector<Link>& links, Heading heading, double s_max_m, Problem& problem);
+
+  /// Headings of the links [rad], by the tug's distance. Safe from several threads.
   std::array<Jet, max_links> headings(double s_m) const;
   /// Speed of the last link's axle against the tug's, by the tug's distance; two derivatives.
   Jet speed_ratio(const Jet& tug_heading, const std::array<Jet, max_links>& headings) const;
 
-  const std::vector<Link>& links() const { return links_; }
+  const std::vector<Link>& links() const;
   /// Largest difference of the two solutions [rad].
-  double certificate_rad() const { return certificate_rad_; }
+  double certificate_rad() const;
 
  private:
-  using Angles = std::array<double, max_links>;
-  using Polynomial = std::array<double, 8>;
-  std::vector<Angles> solve(const std::function<Jet(double)>& heading, double step_m, std::size_t steps) const;
-  Angles slopes(const Jet& tug, const Angles& theta) const;
-  std::array<Jet, max_links> complete(const Jet& tug, const Angles& theta) const;
-
-  std::vector<Link> links_;
-  std::vector<std::array<Polynomial, max_links>> intervals_;
-  double certificate_rad_ = 0;
+  class Solution;
+  std::shared_ptr<const Solution> solution_;
 };
 
 }  // namespace tarmac::sim::truth

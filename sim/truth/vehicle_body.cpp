@@ -20,6 +20,11 @@ using Eigen::Vector3d;
 
 constexpr double free_fall_m_s2 = 9.81;
 
+/// The wheel over which the body falls fastest, and when. Falling freely, its tyre carries nothing.
+struct Fall {
+  double a_m_s2 = 0, t_s = 0;
+};
+
 class VehicleBody final : public SmoothTrajectory {
  public:
   VehicleBody(const BodyOptions& options, std::unique_ptr<const Course> course, Duration duration,
@@ -29,12 +34,13 @@ class VehicleBody final : public SmoothTrajectory {
         vehicle_(options.suspension),
         vibration_(options.vibration, seed),
         suspension_(solve_suspension(
-            *course_,
-            Excitation(vehicle_, Road(options.road, vehicle_.wheelbase_m, vehicle_.track_m, seed, options.bumps),
-                       std::move(ground)),
-            to_s(duration))) {
+            course_,
+            std::make_shared<const Excitation>(
+                vehicle_, Road(options.road, vehicle_.wheelbase_m, vehicle_.track_m, seed, options.bumps),
+                std::move(ground)),
+            to_s(duration), [this](double t_s, const std::array<Jet, 3>& q) { watch_fall(t_s, q); })) {
     if (vehicle_.surge_hz > 0) {
-      surge_ = solve_surge(*course_, {vehicle_.surge_hz, vehicle_.surge_damping}, to_s(duration));
+      surge_ = solve_surge(course_, {vehicle_.surge_hz, vehicle_.surge_damping}, to_s(duration));
     }
   }
 
@@ -71,26 +77,21 @@ class VehicleBody final : public SmoothTrajectory {
     return k;
   }
 
-  struct Fall {
-    double a_m_s2 = 0, t_s = 0, s_m = 0;
-  };
-  /// The wheel over which the body falls fastest, and when. Falling freely, its tyre carries nothing.
-  Fall hardest_fall() const {
-    Fall hardest;
-    const double ahead = vehicle_.wheelbase_m / 2, left = vehicle_.track_m / 2, end_s = to_s(duration_);
-    for (double t_s = 0; t_s <= end_s; t_s += 2 * Suspension::node_spacing_s) {
-      const std::array<Jet, 3> q = suspension_.at(t_s);
-      const double a = q[heave].d2 - ahead * std::abs(q[pitch].d2) - left * std::abs(q[roll].d2);
-      if (a < hardest.a_m_s2) hardest = {a, t_s, course_->at(t_s).s.f};
-    }
-    return hardest;
-  }
+  const Fall& hardest_fall() const { return hardest_fall_; }
+  double distance_m(double t_s) const { return course_->at(t_s).s.f; }
 
  private:
+  void watch_fall(double t_s, const std::array<Jet, 3>& q) {
+    const double ahead = vehicle_.wheelbase_m / 2, left = vehicle_.track_m / 2;
+    const double a = q[heave].d2 - ahead * std::abs(q[pitch].d2) - left * std::abs(q[roll].d2);
+    if (a < hardest_fall_.a_m_s2) hardest_fall_ = {a, t_s};
+  }
+
   Duration duration_;
-  std::unique_ptr<const Course> course_;
+  std::shared_ptr<const Course> course_;
   SuspensionOptions vehicle_;
   Vibration vibration_;
+  Fall hardest_fall_;  // before the suspension, whose solution it watches
   Suspension suspension_;
   std::optional<Suspension> surge_;
 };
@@ -102,13 +103,13 @@ std::shared_ptr<const SmoothTrajectory> make_vehicle_body(const ConfigNode& node
                                                           std::shared_ptr<const scenes::Ground> ground,
                                                           std::uint64_t seed) {
   auto body = std::make_shared<VehicleBody>(options, std::move(course), duration, std::move(ground), seed);
-  const VehicleBody::Fall fall = body->hardest_fall();
+  const Fall fall = body->hardest_fall();
   if (fall.a_m_s2 < -free_fall_m_s2) {
     node.fail_at(options.bumps.empty() ? "road" : "bumps",
                  fmt::format("over one wheel the body would fall at {:.1f} m/s^2 at {:.2f} s, {:.1f} m along the path: "
                              "wheels leave the ground there, which this suspension does not model; drive slower, or "
                              "make the road smoother or the bump lower",
-                             -fall.a_m_s2, fall.t_s, fall.s_m));
+                             -fall.a_m_s2, fall.t_s, body->distance_m(fall.t_s)));
   }
   return body;
 }

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <thread>
+#include <vector>
+
+#include "sim/truth/block_table.h"
 
 namespace tarmac::sim::truth {
 namespace {
@@ -107,6 +111,64 @@ TEST(Suspension, DerivativesAreContinuousAcrossNodes) {
       ASSERT_NEAR(before[m].d2, after[m].d2, 1e-9);
     }
   }
+}
+
+/// Blocks that were dropped are made again, to the last bit: forwards, backwards and from four threads at once.
+TEST(Suspension, AnswersTheSameInWhateverOrderItIsAsked) {
+  const auto forcing = [](double t) {
+    const Jet F{std::sin(3 * t) + std::cos(17 * t), 3 * std::cos(3 * t) - 17 * std::sin(17 * t), 0, 0};
+    return std::array<Jet, 3>{F, 0.5 * F, -2 * F};
+  };
+  const Suspension suspension(modes, forcing, 200, {0, 0, 0}, {0, 0, 0});
+  constexpr int count = 500;
+  const auto ask = [&](int i) {
+    std::vector<double> values;
+    for (const Jet& q : suspension.at(0.4 * i + 0.0371)) values.insert(values.end(), {q.f, q.d1, q.d2, q.d3});
+    return values;
+  };
+  std::vector<std::vector<double>> forwards;
+  for (int i = 0; i < count; ++i) forwards.push_back(ask(i));
+  for (int i = count - 1; i >= 0; --i) ASSERT_EQ(ask(i), forwards[static_cast<std::size_t>(i)]) << i;
+  std::vector<int> wrong(4, 0);
+  {
+    std::vector<std::jthread> threads;
+    for (int thread = 0; thread < 4; ++thread)
+      threads.emplace_back([&, thread] {
+        for (int i = 0; i < count; ++i) {
+          const int k = (i * (2 * thread + 7)) % count;
+          wrong[static_cast<std::size_t>(thread)] += ask(k) != forwards[static_cast<std::size_t>(k)];
+        }
+      });
+  }
+  EXPECT_EQ(wrong, std::vector<int>(4, 0));
+}
+
+TEST(Suspension, ShowsEveryNodeAsItIsSolved) {
+  const auto forcing = [](double t) { return std::array<Jet, 3>{Jet{std::sin(t), std::cos(t), 0, 0}, Jet{}, Jet{}}; };
+  std::vector<std::pair<double, std::array<Jet, 3>>> seen;
+  const Suspension suspension(modes, forcing, 1, {1e-3, 0, 0}, {0, 0, 0},
+                              [&](double t_s, const std::array<Jet, 3>& q) { seen.emplace_back(t_s, q); });
+  ASSERT_EQ(seen.size(), 1001u);
+  for (const auto& [t_s, q] : seen) {
+    const std::array<Jet, 3> table = suspension.at(t_s);
+    for (int m = 0; m < 3; ++m) {
+      ASSERT_NEAR(q[m].f, table[m].f, 1e-15) << t_s;
+      ASSERT_NEAR(q[m].d2, table[m].d2, 1e-9) << t_s;
+    }
+  }
+}
+
+TEST(BlockTable, KeepsWhatItHasRoomForAndMakesTheRestAgain) {
+  std::vector<std::size_t> made;
+  const BlockTable<std::size_t> table(4, [&](std::size_t index) {
+    made.push_back(index);
+    return 10 * index;
+  });
+  for (const std::size_t index : {0u, 1u, 2u, 3u, 0u, 3u, 4u, 1u, 0u}) EXPECT_EQ(*table.get(index), 10 * index);
+  EXPECT_EQ(made, (std::vector<std::size_t>{0, 1, 2, 3, 4, 0}));
+  table.put(5, std::make_shared<const std::size_t>(50));
+  EXPECT_EQ(*table.get(5), 50u);
+  EXPECT_EQ(made.size(), 6u);
 }
 
 }  // namespace
