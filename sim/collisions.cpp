@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "scenes/primitives/inside.h"
 
 namespace tarmac::sim {
 namespace {
@@ -36,6 +37,7 @@ using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
 struct Piece {
   Geometry geometry;
   SE3 T_body_piece = SE3::Identity();
+  const scenes::Mesh* mesh = nullptr;  ///< that it is; null: a box, or what stands
 };
 
 /// Anything that may run into something.
@@ -97,7 +99,7 @@ Body actor_body(const scenes::Scene& scene, std::size_t index, const std::shared
     if (pieces->empty())
       for (const scenes::Instance& instance : scene.instances)
         if (instance.actor == static_cast<std::int32_t>(index) && !scene.meshes[instance.mesh].triangles.empty())
-          pieces->push_back({shapes->mesh(instance.mesh), instance.T_parent_mesh});
+          pieces->push_back({shapes->mesh(instance.mesh), instance.T_parent_mesh, &scene.meshes[instance.mesh]});
     return *pieces;
   };
   return {actor.name,
@@ -122,9 +124,9 @@ std::vector<double> ego_accelerations(const core::SmoothTrajectory& ego, double 
   return bounds;
 }
 
-Body ego_body(const core::SmoothTrajectory& ego, const EgoBox& box, Time end) {
-  const Vector3d size(box.length_m, box.width_m, box.height_m);
-  const Vector3d middle(0.5 * box.length_m - box.rear_overhang_m, 0, 0.5 * box.height_m);
+Body ego_body(const core::SmoothTrajectory& ego, const truth::BodyBox& box, Time end) {
+  const Vector3d size(box.length_m, box.width_m, box.height_m + box.below_m);
+  const Vector3d middle(0.5 * box.length_m - box.rear_overhang_m, 0, 0.5 * (box.height_m - box.below_m));
   const double radius_m = middle.norm() + 0.5 * size.norm();
   auto pieces = std::make_shared<std::vector<Piece>>(1);
   pieces->front().geometry = std::make_shared<fcl::Boxd>(size.x(), size.y(), size.z());
@@ -142,8 +144,13 @@ Body ego_body(const core::SmoothTrajectory& ego, const EgoBox& box, Time end) {
     return most;
   };
   const Time last = std::min(end, ego.end());
+  const auto pose = [&ego, last, upright = box.upright](Time t) {
+    SE3 T_world_body = ego.pose(std::min(t, last));
+    if (upright) T_world_body.linear().setIdentity();
+    return T_world_body;
+  };
   return {"the ego vehicle", nullptr,
-          radius_m,          [&ego, last](Time t) { return ego.pose(std::min(t, last)); },
+          radius_m,          pose,
           acceleration,      [pieces]() -> const std::vector<Piece>& { return *pieces; }};
 }
 
@@ -189,6 +196,28 @@ Nearest nearest(const Body& a, const Body& b, Time t, double lift_a_m) {
     }
   }
   return least;
+}
+
+bool holds(const Piece& solid, const Vector3d& p) {
+  if (solid.mesh) return scenes::is_inside(*solid.mesh, p);
+  const auto& box = dynamic_cast<const fcl::Boxd&>(*solid.geometry);
+  return (p.cwiseAbs().array() < 0.5 * box.side.array()).all();
+}
+
+/// A point of the piece, in its own frame.
+Vector3d point_of(const Piece& piece) {
+  if (!piece.mesh) return Vector3d::Zero();
+  return piece.mesh->vertices[piece.mesh->triangles[0][0]].cast<double>();
+}
+
+/// Surfaces of a and b that do not meet: a piece of one is then either wholly inside one of the other's, or outside.
+bool is_inside(const Body& a, const Body& b, Time t) {
+  for (const Piece& piece_a : a.pieces())
+    for (const Piece& piece_b : b.pieces()) {
+      const Vector3d p_world = a.pose(t) * piece_a.T_body_piece * point_of(piece_a);
+      if (holds(piece_b, (b.pose(t) * piece_b.T_body_piece).inverse() * p_world)) return true;
+    }
+  return false;
 }
 
 /// From `when.begin` on, always as far as nothing can happen. Returns the time at which the bodies meet.
@@ -237,7 +266,11 @@ void check_each_other(const std::vector<Body>& bodies, Time end, const std::stri
       for (std::size_t j = 0; j < i; ++j) {
         if ((reach[i].centre_m - reach[j].centre_m).norm() > reach[i].radius_m + reach[j].radius_m + touch_m) continue;
         if (belong_together(bodies[i], bodies[j])) continue;
-        if (const auto t = meeting(bodies[i], bodies[j], when, 0)) {
+        std::optional<Time> t;
+        if (k == 0 && (is_inside(bodies[i], bodies[j], when.begin) || is_inside(bodies[j], bodies[i], when.begin)))
+          t = when.begin;
+        if (!t) t = meeting(bodies[i], bodies[j], when, 0);
+        if (t) {
           const bool ego = bodies[j].actor == nullptr;
           refuse(bodies[i], ego ? bodies[j].name : "actor " + bodies[j].name, *t, scenario_name);
         }
@@ -299,6 +332,19 @@ Scenery scenery_near(const scenes::Scene& scene, const Swept& swept) {
   return scenery;
 }
 
+/// The solid that an actor begins in; null: none.
+const scenes::Mesh* standing_around(const scenes::Scene& scene, const Body& actor, Time t) {
+  for (const Piece& piece : actor.pieces()) {
+    const Vector3d p_world = actor.pose(t) * piece.T_body_piece * point_of(piece) + Vector3d(0, 0, lift_m);
+    for (const scenes::Instance& instance : scene.instances) {
+      if (instance.actor >= 0 || is_free(instance.label)) continue;
+      const scenes::Mesh& mesh = scene.meshes[instance.mesh];
+      if (scenes::is_inside(mesh, instance.T_parent_mesh.inverse() * p_world)) return &mesh;
+    }
+  }
+  return nullptr;
+}
+
 void check_against_what_stands(const scenes::Scene& scene, const std::vector<Body>& actors, Time end,
                                const std::string& scenario_name) {
   Swept swept;
@@ -314,7 +360,7 @@ void check_against_what_stands(const scenes::Scene& scene, const std::vector<Bod
     }
   const Scenery scenery = scenery_near(scene, swept);
   if (!scenery.geometry) return;
-  const std::vector<Piece> pieces{{scenery.geometry}};
+  const std::vector<Piece> pieces{Piece{.geometry = scenery.geometry}};
   const auto stands = [](Time) { return SE3(SE3::Identity()); };
   // Its radius holds everything: how near an actor is, only the triangles tell.
   const Body standing{"what stands there",
@@ -324,6 +370,8 @@ void check_against_what_stands(const scenes::Scene& scene, const std::vector<Bod
                       [](Time, Time) { return 0.0; },
                       [&]() -> const std::vector<Piece>& { return pieces; }};
   for (const Body& actor : actors) {
+    if (const scenes::Mesh* around = standing_around(scene, actor, Time{}))
+      refuse(actor, "what stands there (" + around->name + ")", Time{}, scenario_name);
     for (std::int64_t k = 0; k < count; ++k) {
       const Interval when = interval(k);
       const bool rests =
@@ -339,8 +387,8 @@ void check_against_what_stands(const scenes::Scene& scene, const std::vector<Bod
 
 }  // namespace
 
-void check_collisions(const scenes::Scene& scene, const core::SmoothTrajectory& ego, const EgoBox& box, Time end,
-                      const std::string& scenario_name) {
+void check_collisions(const scenes::Scene& scene, const core::SmoothTrajectory& ego, const truth::BodyBox& box,
+                      Time end, const std::string& scenario_name) {
   if (scene.actors.empty()) return;
   end = std::min(end, ego.end());
   const auto shapes = std::make_shared<Shapes>(scene);
