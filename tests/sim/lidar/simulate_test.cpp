@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -125,7 +126,9 @@ TEST_F(Simulate, GivesTheSameRecordingAndTruthAtAnyNumberOfThreadsWithEverything
       }
       if (points.kind[i] == truth::ReturnKind::noise) {
         EXPECT_EQ(points.label[i], scenes::Label::none);
+        EXPECT_EQ(std::hypot(points.normal_x[i], points.normal_y[i], points.normal_z[i]), 0);
       }
+      EXPECT_EQ(std::isnan(points.cos_incidence[i]), points.kind[i] == truth::ReturnKind::noise);
     }
   }
   for (const auto kind : {truth::ReturnKind::self, truth::ReturnKind::noise, truth::ReturnKind::transmitted,
