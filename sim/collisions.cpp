@@ -2,9 +2,11 @@
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
+#include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -29,6 +31,7 @@ constexpr double touch_m = 0.02;
 constexpr double lift_m = 0.15;
 constexpr double interval_s = 0.5;
 constexpr double difference_s = 1e-3;
+constexpr double slack = 0.3, closely_m = 0.3;
 
 using Triangles = fcl::BVHModel<fcl::OBBRSSd>;
 using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
@@ -130,6 +133,7 @@ Body ego_body(const core::SmoothTrajectory& ego, const truth::BodyBox& box, Time
   const double radius_m = middle.norm() + 0.5 * size.norm();
   auto pieces = std::make_shared<std::vector<Piece>>(1);
   pieces->front().geometry = std::make_shared<fcl::Boxd>(size.x(), size.y(), size.z());
+  pieces->front().geometry->computeLocalAABB();
   pieces->front().T_body_piece.translation() = middle;
   const Time begin = ego.begin();
   auto bounds = std::make_shared<std::vector<double>>(ego_accelerations(ego, radius_m, end));
@@ -163,13 +167,65 @@ Reach reach_of(const Body& body, const Interval& when) {
   return {p, body.radius_m + std::max((p0 - p).norm(), (p1 - p).norm()) + bow};
 }
 
-/// Speed of any point of the body at t, at most.
-double speed_m_s(const Body& body, Time t) {
+struct Speed {
+  Vector3d of_origin_m_s;
+  double beside_m_s;  ///< by how much that of another of its points may differ, at most
+};
+
+Speed speed_of(const Body& body, Time t) {
   const Time later = t + core::duration_from_s(difference_s);
   const SE3 T0 = body.pose(t), T1 = body.pose(later);
   const double turn = core::so3::angle_rad(T0.linear().transpose() * T1.linear());
-  return ((T1.translation() - T0.translation()).norm() + turn * body.radius_m) / difference_s +
-         body.acceleration_m_s2(t, later) * difference_s;
+  return {(T1.translation() - T0.translation()) / difference_s,
+          turn * body.radius_m / difference_s + body.acceleration_m_s2(t, later) * difference_s};
+}
+
+bool stands(const Body& body, Time t) {
+  const Speed speed = speed_of(body, t);
+  return speed.of_origin_m_s.norm() + speed.beside_m_s == 0;
+}
+
+/// How fast any point of one comes towards any point of the other at t, at most: side by side they may be fast.
+double approach_m_s(const Body& a, const Body& b, Time t) {
+  const Speed of_a = speed_of(a, t), of_b = speed_of(b, t);
+  return (of_a.of_origin_m_s - of_b.of_origin_m_s).norm() + of_a.beside_m_s + of_b.beside_m_s;
+}
+
+/// All that a body passes in an interval lies in a box: that of its triangles in the middle of it, longer by its way,
+/// wider by what turning and acceleration (bounds over all its points) can make of it.
+struct Passage {
+  fcl::Boxd box;
+  fcl::Transform3d T_world_box;
+};
+
+Eigen::AlignedBox3d bounds_of(const Body& body) {
+  Eigen::AlignedBox3d bounds;
+  for (const Piece& piece : body.pieces()) {
+    const fcl::AABBd& local = piece.geometry->aabb_local;
+    for (int corner = 0; corner < 8; ++corner)
+      bounds.extend(piece.T_body_piece * Vector3d((corner & 1 ? local.max_ : local.min_).x(),
+                                                  (corner & 2 ? local.max_ : local.min_).y(),
+                                                  (corner & 4 ? local.max_ : local.min_).z()));
+  }
+  return bounds;
+}
+
+Passage passage_of(const Body& body, const Interval& when, double lift) {
+  const Time middle = when.begin + (when.end - when.begin) / 2;
+  const double h = 0.5 * core::to_s(when.end - when.begin) + 1e-6;
+  const Speed speed = speed_of(body, middle);
+  const double aside = speed.beside_m_s * h + body.acceleration_m_s2(when.begin, when.end) * h * h / 2 + touch_m;
+  SE3 T_world_box = body.pose(middle);
+  const Eigen::AlignedBox3d bounds = bounds_of(body);
+  const Vector3d way = (T_world_box.linear().transpose() * speed.of_origin_m_s).cwiseAbs() * h;
+  const Vector3d size = bounds.sizes() + 2 * (way + Vector3d::Constant(aside));
+  T_world_box.translation() = T_world_box * bounds.center() + Vector3d(0, 0, lift);
+  return {fcl::Boxd(size.x(), size.y(), size.z()), fcl::Transform3d(T_world_box)};
+}
+
+bool meet(const Passage& a, const fcl::CollisionGeometryd& b, const fcl::Transform3d& T_world_b) {
+  fcl::CollisionResultd result;
+  return fcl::collide(&a.box, a.T_world_box, &b, T_world_b, fcl::CollisionRequestd(), result) > 0;
 }
 
 struct Nearest {
@@ -177,20 +233,21 @@ struct Nearest {
   std::size_t of_second = 0;                                    ///< triangle of the second body
 };
 
-/// Two bodies, the first of them lifted.
-Nearest nearest(const Body& a, const Body& b, Time t, double lift_a_m) {
+/// Two bodies, the first of them lifted. With a `share` the distance may be larger than the true one by this share.
+Nearest nearest(const Body& a, const Body& b, Time t, double lift_a_m, double share = 0) {
   Nearest least;
   SE3 T_a = a.pose(t);
   T_a.translation().z() += lift_a_m;
   const SE3 T_b = b.pose(t);
   for (const Piece& piece_a : a.pieces()) {
     for (const Piece& piece_b : b.pieces()) {
-      const fcl::CollisionObjectd object_a(piece_a.geometry, fcl::Transform3d(T_a * piece_a.T_body_piece));
-      const fcl::CollisionObjectd object_b(piece_b.geometry, fcl::Transform3d(T_b * piece_b.T_body_piece));
       fcl::DistanceRequestd request;
       request.enable_nearest_points = false;
+      request.rel_err = share;
       fcl::DistanceResultd result;
-      fcl::distance(&object_a, &object_b, request, result);
+      // Not by fcl::CollisionObject: each would go through all vertices for its box.
+      fcl::distance(piece_a.geometry.get(), fcl::Transform3d(T_a * piece_a.T_body_piece), piece_b.geometry.get(),
+                    fcl::Transform3d(T_b * piece_b.T_body_piece), request, result);
       if (result.min_distance < least.distance_m)
         least = {result.min_distance, static_cast<std::size_t>(std::max<std::intptr_t>(0, result.b2))};
     }
@@ -228,11 +285,13 @@ std::optional<Time> meeting(const Body& a, const Body& b, const Interval& when, 
         (a.pose(t).translation() - b.pose(t).translation()).norm() - a.radius_m - b.radius_m - lift_a_m;
     double free_m = between_m;
     if (free_m < 1) {
-      free_m = nearest(a, b, t, lift_a_m).distance_m;
+      // Long walls beside make the exact distance dear; it matters only where it is small.
+      free_m = nearest(a, b, t, lift_a_m, slack).distance_m / (1 + slack);
+      if (free_m < closely_m) free_m = nearest(a, b, t, lift_a_m).distance_m;
       if (free_m < touch_m) return t;
     }
     const double left_s = core::to_s(when.end - t);
-    const double v = speed_m_s(a, t) + speed_m_s(b, t);
+    const double v = approach_m_s(a, b, t);
     const double acceleration = a.acceleration_m_s2(t, when.end) + b.acceleration_m_s2(t, when.end);
     double step_s = left_s;
     if (v * left_s + 0.5 * acceleration * left_s * left_s > free_m)
@@ -269,7 +328,8 @@ void check_each_other(const std::vector<Body>& bodies, Time end, const std::stri
         std::optional<Time> t;
         if (k == 0 && (is_inside(bodies[i], bodies[j], when.begin) || is_inside(bodies[j], bodies[i], when.begin)))
           t = when.begin;
-        if (!t) t = meeting(bodies[i], bodies[j], when, 0);
+        const Passage of_i = passage_of(bodies[i], when, 0), of_j = passage_of(bodies[j], when, 0);
+        if (!t && meet(of_i, of_j.box, of_j.T_world_box)) t = meeting(bodies[i], bodies[j], when, 0);
         if (t) {
           const bool ego = bodies[j].actor == nullptr;
           refuse(bodies[i], ego ? bodies[j].name : "actor " + bodies[j].name, *t, scenario_name);
@@ -361,12 +421,12 @@ void check_against_what_stands(const scenes::Scene& scene, const std::vector<Bod
   const Scenery scenery = scenery_near(scene, swept);
   if (!scenery.geometry) return;
   const std::vector<Piece> pieces{Piece{.geometry = scenery.geometry}};
-  const auto stands = [](Time) { return SE3(SE3::Identity()); };
+  const auto stays = [](Time) { return SE3(SE3::Identity()); };
   // Its radius holds everything: how near an actor is, only the triangles tell.
   const Body standing{"what stands there",
                       nullptr,
                       1e9,
-                      stands,
+                      stays,
                       [](Time, Time) { return 0.0; },
                       [&]() -> const std::vector<Piece>& { return pieces; }};
   for (const Body& actor : actors) {
@@ -374,9 +434,8 @@ void check_against_what_stands(const scenes::Scene& scene, const std::vector<Bod
       refuse(actor, "what stands there (" + around->name + ")", Time{}, scenario_name);
     for (std::int64_t k = 0; k < count; ++k) {
       const Interval when = interval(k);
-      const bool rests =
-          k > 0 && actor.acceleration_m_s2(when.begin, when.end) == 0 && speed_m_s(actor, when.begin) == 0;
-      if (rests) continue;
+      const bool rests = k > 0 && actor.acceleration_m_s2(when.begin, when.end) == 0 && stands(actor, when.begin);
+      if (rests || !meet(passage_of(actor, when, lift_m), *scenery.geometry, fcl::Transform3d::Identity())) continue;
       if (const auto t = meeting(actor, standing, when, lift_m)) {
         const std::size_t triangle = nearest(actor, standing, *t, lift_m).of_second;
         refuse(actor, "what stands there (" + scene.meshes[scenery.mesh.at(triangle)].name + ")", *t, scenario_name);
