@@ -26,6 +26,7 @@ Rig merged_rig(const Rig& rig) {
 /// Points of one period, not yet in order.
 struct MergedSweeps::Gathered {
   std::vector<Time> t;
+  std::vector<Time> key;  ///< the latest stamp of its LiDAR's so far
   std::vector<Eigen::Vector3f> p_body_m;
   std::vector<std::uint16_t> ring;
   std::vector<float> intensity;
@@ -81,6 +82,8 @@ void MergedSweeps::gather(std::size_t lidar, std::size_t i, const LidarSweep& sw
   for (std::size_t p = 0; p < sweep.size(); ++p) {
     const Time t = sweep.time(p) - ahead;
     if (lidar > 0 && (t < from || t >= to)) continue;
+    const bool follows = !into.t.empty() && into.source.back().lidar == lidar;
+    into.key.push_back(follows ? std::max(into.key.back(), t) : t);
     into.t.push_back(t);
     into.p_body_m.push_back((sheet.T_body_lidar * sweep.point(p)).cast<float>());
     into.ring.push_back(sweep.ring[p]);
@@ -112,7 +115,7 @@ LidarSweep MergedSweeps::sweep(std::size_t k, std::vector<PointSource>* sources)
   }
   std::vector<std::size_t> order(all.t.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return all.t[a] < all.t[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return all.key[a] < all.key[b]; });
 
   LidarSweep merged;
   merged.index = first.index;

@@ -25,9 +25,14 @@ struct PointSource {
 /// counts). Where the first LiDAR has lost a sweep its period ends as if it had not, and what others saw in the gap is
 /// left out, as is what they saw before its first sweep.
 ///
-/// Points are in the body's frame by each LiDAR's nominal extrinsic, in order of firing time, then of LiDARs, then as
-/// they were; `point_sensor` tells whose they are, `ring` counts each LiDAR's own rings. `end` is the last firing of
-/// the first LiDAR's sweep, or of the last point.
+/// Points are in the body's frame by each LiDAR's nominal extrinsic. Each LiDAR's stay in their recorded order, and the
+/// LiDARs' interleave by stamp, the first one's before the others' where stamps are equal. So where stamps never go
+/// back, points are in order of firing time. Where they do (reversed, shuffled, jittered), a point waits for its
+/// LiDAR's latest stamp so far: no LiDAR's firing order is lost, and `t_ns` then goes back as it does in that LiDAR's
+/// own sweeps. Stamps that are wrong as a whole (an unknown offset, a wrong unit, none at all) interleave LiDARs
+/// wrongly, and put points into the sweep that the stamps name; PointSource tells where they come from. `point_sensor`
+/// tells whose they are, `ring` counts each LiDAR's own rings. `end` is the last firing of the first LiDAR's sweep, or
+/// of the last point.
 ///
 /// Any sweep may be asked for, from several threads. Keeps a reference to the recording.
 class MergedSweeps {

@@ -105,7 +105,7 @@ std::string describe_imu(const std::string& name) {
 
 std::vector<OptionDescription> describe_rig_options() {
   RigOptions options;
-  options.has_imu = true;
+  options.has_imu = options.body.sized = true;
   return describe_options(options);
 }
 

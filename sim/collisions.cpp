@@ -2,9 +2,11 @@
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
+#include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -16,6 +18,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "scenes/primitives/inside.h"
 
 namespace tarmac::sim {
 namespace {
@@ -28,6 +31,7 @@ constexpr double touch_m = 0.02;
 constexpr double lift_m = 0.15;
 constexpr double interval_s = 0.5;
 constexpr double difference_s = 1e-3;
+constexpr double slack = 0.3, closely_m = 0.3;
 
 using Triangles = fcl::BVHModel<fcl::OBBRSSd>;
 using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
@@ -36,6 +40,7 @@ using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
 struct Piece {
   Geometry geometry;
   SE3 T_body_piece = SE3::Identity();
+  const scenes::Mesh* mesh = nullptr;  ///< that it is; null: a box, or what stands
 };
 
 /// Anything that may run into something.
@@ -97,7 +102,7 @@ Body actor_body(const scenes::Scene& scene, std::size_t index, const std::shared
     if (pieces->empty())
       for (const scenes::Instance& instance : scene.instances)
         if (instance.actor == static_cast<std::int32_t>(index) && !scene.meshes[instance.mesh].triangles.empty())
-          pieces->push_back({shapes->mesh(instance.mesh), instance.T_parent_mesh});
+          pieces->push_back({shapes->mesh(instance.mesh), instance.T_parent_mesh, &scene.meshes[instance.mesh]});
     return *pieces;
   };
   return {actor.name,
@@ -122,12 +127,13 @@ std::vector<double> ego_accelerations(const core::SmoothTrajectory& ego, double 
   return bounds;
 }
 
-Body ego_body(const core::SmoothTrajectory& ego, const EgoBox& box, Time end) {
-  const Vector3d size(box.length_m, box.width_m, box.height_m);
-  const Vector3d middle(0.5 * box.length_m - box.rear_overhang_m, 0, 0.5 * box.height_m);
+Body ego_body(const core::SmoothTrajectory& ego, const truth::BodyBox& box, Time end) {
+  const Vector3d size(box.length_m, box.width_m, box.height_m + box.below_m);
+  const Vector3d middle(0.5 * box.length_m - box.rear_overhang_m, 0, 0.5 * (box.height_m - box.below_m));
   const double radius_m = middle.norm() + 0.5 * size.norm();
   auto pieces = std::make_shared<std::vector<Piece>>(1);
   pieces->front().geometry = std::make_shared<fcl::Boxd>(size.x(), size.y(), size.z());
+  pieces->front().geometry->computeLocalAABB();
   pieces->front().T_body_piece.translation() = middle;
   const Time begin = ego.begin();
   auto bounds = std::make_shared<std::vector<double>>(ego_accelerations(ego, radius_m, end));
@@ -142,8 +148,13 @@ Body ego_body(const core::SmoothTrajectory& ego, const EgoBox& box, Time end) {
     return most;
   };
   const Time last = std::min(end, ego.end());
+  const auto pose = [&ego, last, upright = box.upright](Time t) {
+    SE3 T_world_body = ego.pose(std::min(t, last));
+    if (upright) T_world_body.linear().setIdentity();
+    return T_world_body;
+  };
   return {"the ego vehicle", nullptr,
-          radius_m,          [&ego, last](Time t) { return ego.pose(std::min(t, last)); },
+          radius_m,          pose,
           acceleration,      [pieces]() -> const std::vector<Piece>& { return *pieces; }};
 }
 
@@ -156,13 +167,65 @@ Reach reach_of(const Body& body, const Interval& when) {
   return {p, body.radius_m + std::max((p0 - p).norm(), (p1 - p).norm()) + bow};
 }
 
-/// Speed of any point of the body at t, at most.
-double speed_m_s(const Body& body, Time t) {
+struct Speed {
+  Vector3d of_origin_m_s;
+  double beside_m_s;  ///< by how much that of another of its points may differ, at most
+};
+
+Speed speed_of(const Body& body, Time t) {
   const Time later = t + core::duration_from_s(difference_s);
   const SE3 T0 = body.pose(t), T1 = body.pose(later);
   const double turn = core::so3::angle_rad(T0.linear().transpose() * T1.linear());
-  return ((T1.translation() - T0.translation()).norm() + turn * body.radius_m) / difference_s +
-         body.acceleration_m_s2(t, later) * difference_s;
+  return {(T1.translation() - T0.translation()) / difference_s,
+          turn * body.radius_m / difference_s + body.acceleration_m_s2(t, later) * difference_s};
+}
+
+bool stands(const Body& body, Time t) {
+  const Speed speed = speed_of(body, t);
+  return speed.of_origin_m_s.norm() + speed.beside_m_s == 0;
+}
+
+/// How fast any point of one comes towards any point of the other at t, at most: side by side they may be fast.
+double approach_m_s(const Body& a, const Body& b, Time t) {
+  const Speed of_a = speed_of(a, t), of_b = speed_of(b, t);
+  return (of_a.of_origin_m_s - of_b.of_origin_m_s).norm() + of_a.beside_m_s + of_b.beside_m_s;
+}
+
+/// All that a body passes in an interval lies in a box: that of its triangles in the middle of it, longer by its way,
+/// wider by what turning and acceleration (bounds over all its points) can make of it.
+struct Passage {
+  fcl::Boxd box;
+  fcl::Transform3d T_world_box;
+};
+
+Eigen::AlignedBox3d bounds_of(const Body& body) {
+  Eigen::AlignedBox3d bounds;
+  for (const Piece& piece : body.pieces()) {
+    const fcl::AABBd& local = piece.geometry->aabb_local;
+    for (int corner = 0; corner < 8; ++corner)
+      bounds.extend(piece.T_body_piece * Vector3d((corner & 1 ? local.max_ : local.min_).x(),
+                                                  (corner & 2 ? local.max_ : local.min_).y(),
+                                                  (corner & 4 ? local.max_ : local.min_).z()));
+  }
+  return bounds;
+}
+
+Passage passage_of(const Body& body, const Interval& when, double lift) {
+  const Time middle = when.begin + (when.end - when.begin) / 2;
+  const double h = 0.5 * core::to_s(when.end - when.begin) + 1e-6;
+  const Speed speed = speed_of(body, middle);
+  const double aside = speed.beside_m_s * h + body.acceleration_m_s2(when.begin, when.end) * h * h / 2 + touch_m;
+  SE3 T_world_box = body.pose(middle);
+  const Eigen::AlignedBox3d bounds = bounds_of(body);
+  const Vector3d way = (T_world_box.linear().transpose() * speed.of_origin_m_s).cwiseAbs() * h;
+  const Vector3d size = bounds.sizes() + 2 * (way + Vector3d::Constant(aside));
+  T_world_box.translation() = T_world_box * bounds.center() + Vector3d(0, 0, lift);
+  return {fcl::Boxd(size.x(), size.y(), size.z()), fcl::Transform3d(T_world_box)};
+}
+
+bool meet(const Passage& a, const fcl::CollisionGeometryd& b, const fcl::Transform3d& T_world_b) {
+  fcl::CollisionResultd result;
+  return fcl::collide(&a.box, a.T_world_box, &b, T_world_b, fcl::CollisionRequestd(), result) > 0;
 }
 
 struct Nearest {
@@ -170,25 +233,48 @@ struct Nearest {
   std::size_t of_second = 0;                                    ///< triangle of the second body
 };
 
-/// Two bodies, the first of them lifted.
-Nearest nearest(const Body& a, const Body& b, Time t, double lift_a_m) {
+/// Two bodies, the first of them lifted. With a `share` the distance may be larger than the true one by this share.
+Nearest nearest(const Body& a, const Body& b, Time t, double lift_a_m, double share = 0) {
   Nearest least;
   SE3 T_a = a.pose(t);
   T_a.translation().z() += lift_a_m;
   const SE3 T_b = b.pose(t);
   for (const Piece& piece_a : a.pieces()) {
     for (const Piece& piece_b : b.pieces()) {
-      const fcl::CollisionObjectd object_a(piece_a.geometry, fcl::Transform3d(T_a * piece_a.T_body_piece));
-      const fcl::CollisionObjectd object_b(piece_b.geometry, fcl::Transform3d(T_b * piece_b.T_body_piece));
       fcl::DistanceRequestd request;
       request.enable_nearest_points = false;
+      request.rel_err = share;
       fcl::DistanceResultd result;
-      fcl::distance(&object_a, &object_b, request, result);
+      // Not by fcl::CollisionObject: each would go through all vertices for its box.
+      fcl::distance(piece_a.geometry.get(), fcl::Transform3d(T_a * piece_a.T_body_piece), piece_b.geometry.get(),
+                    fcl::Transform3d(T_b * piece_b.T_body_piece), request, result);
       if (result.min_distance < least.distance_m)
         least = {result.min_distance, static_cast<std::size_t>(std::max<std::intptr_t>(0, result.b2))};
     }
   }
   return least;
+}
+
+bool holds(const Piece& solid, const Vector3d& p) {
+  if (solid.mesh) return scenes::is_inside(*solid.mesh, p);
+  const auto& box = dynamic_cast<const fcl::Boxd&>(*solid.geometry);
+  return (p.cwiseAbs().array() < 0.5 * box.side.array()).all();
+}
+
+/// A point of the piece, in its own frame.
+Vector3d point_of(const Piece& piece) {
+  if (!piece.mesh) return Vector3d::Zero();
+  return piece.mesh->vertices[piece.mesh->triangles[0][0]].cast<double>();
+}
+
+/// Surfaces of a and b that do not meet: a piece of one is then either wholly inside one of the other's, or outside.
+bool is_inside(const Body& a, const Body& b, Time t) {
+  for (const Piece& piece_a : a.pieces())
+    for (const Piece& piece_b : b.pieces()) {
+      const Vector3d p_world = a.pose(t) * piece_a.T_body_piece * point_of(piece_a);
+      if (holds(piece_b, (b.pose(t) * piece_b.T_body_piece).inverse() * p_world)) return true;
+    }
+  return false;
 }
 
 /// From `when.begin` on, always as far as nothing can happen. Returns the time at which the bodies meet.
@@ -199,11 +285,13 @@ std::optional<Time> meeting(const Body& a, const Body& b, const Interval& when, 
         (a.pose(t).translation() - b.pose(t).translation()).norm() - a.radius_m - b.radius_m - lift_a_m;
     double free_m = between_m;
     if (free_m < 1) {
-      free_m = nearest(a, b, t, lift_a_m).distance_m;
+      // Long walls beside make the exact distance dear; it matters only where it is small.
+      free_m = nearest(a, b, t, lift_a_m, slack).distance_m / (1 + slack);
+      if (free_m < closely_m) free_m = nearest(a, b, t, lift_a_m).distance_m;
       if (free_m < touch_m) return t;
     }
     const double left_s = core::to_s(when.end - t);
-    const double v = speed_m_s(a, t) + speed_m_s(b, t);
+    const double v = approach_m_s(a, b, t);
     const double acceleration = a.acceleration_m_s2(t, when.end) + b.acceleration_m_s2(t, when.end);
     double step_s = left_s;
     if (v * left_s + 0.5 * acceleration * left_s * left_s > free_m)
@@ -237,7 +325,12 @@ void check_each_other(const std::vector<Body>& bodies, Time end, const std::stri
       for (std::size_t j = 0; j < i; ++j) {
         if ((reach[i].centre_m - reach[j].centre_m).norm() > reach[i].radius_m + reach[j].radius_m + touch_m) continue;
         if (belong_together(bodies[i], bodies[j])) continue;
-        if (const auto t = meeting(bodies[i], bodies[j], when, 0)) {
+        std::optional<Time> t;
+        if (k == 0 && (is_inside(bodies[i], bodies[j], when.begin) || is_inside(bodies[j], bodies[i], when.begin)))
+          t = when.begin;
+        const Passage of_i = passage_of(bodies[i], when, 0), of_j = passage_of(bodies[j], when, 0);
+        if (!t && meet(of_i, of_j.box, of_j.T_world_box)) t = meeting(bodies[i], bodies[j], when, 0);
+        if (t) {
           const bool ego = bodies[j].actor == nullptr;
           refuse(bodies[i], ego ? bodies[j].name : "actor " + bodies[j].name, *t, scenario_name);
         }
@@ -299,6 +392,19 @@ Scenery scenery_near(const scenes::Scene& scene, const Swept& swept) {
   return scenery;
 }
 
+/// The solid that an actor begins in; null: none.
+const scenes::Mesh* standing_around(const scenes::Scene& scene, const Body& actor, Time t) {
+  for (const Piece& piece : actor.pieces()) {
+    const Vector3d p_world = actor.pose(t) * piece.T_body_piece * point_of(piece) + Vector3d(0, 0, lift_m);
+    for (const scenes::Instance& instance : scene.instances) {
+      if (instance.actor >= 0 || is_free(instance.label)) continue;
+      const scenes::Mesh& mesh = scene.meshes[instance.mesh];
+      if (scenes::is_inside(mesh, instance.T_parent_mesh.inverse() * p_world)) return &mesh;
+    }
+  }
+  return nullptr;
+}
+
 void check_against_what_stands(const scenes::Scene& scene, const std::vector<Body>& actors, Time end,
                                const std::string& scenario_name) {
   Swept swept;
@@ -314,21 +420,22 @@ void check_against_what_stands(const scenes::Scene& scene, const std::vector<Bod
     }
   const Scenery scenery = scenery_near(scene, swept);
   if (!scenery.geometry) return;
-  const std::vector<Piece> pieces{{scenery.geometry}};
-  const auto stands = [](Time) { return SE3(SE3::Identity()); };
+  const std::vector<Piece> pieces{Piece{.geometry = scenery.geometry}};
+  const auto stays = [](Time) { return SE3(SE3::Identity()); };
   // Its radius holds everything: how near an actor is, only the triangles tell.
   const Body standing{"what stands there",
                       nullptr,
                       1e9,
-                      stands,
+                      stays,
                       [](Time, Time) { return 0.0; },
                       [&]() -> const std::vector<Piece>& { return pieces; }};
   for (const Body& actor : actors) {
+    if (const scenes::Mesh* around = standing_around(scene, actor, Time{}))
+      refuse(actor, "what stands there (" + around->name + ")", Time{}, scenario_name);
     for (std::int64_t k = 0; k < count; ++k) {
       const Interval when = interval(k);
-      const bool rests =
-          k > 0 && actor.acceleration_m_s2(when.begin, when.end) == 0 && speed_m_s(actor, when.begin) == 0;
-      if (rests) continue;
+      const bool rests = k > 0 && actor.acceleration_m_s2(when.begin, when.end) == 0 && stands(actor, when.begin);
+      if (rests || !meet(passage_of(actor, when, lift_m), *scenery.geometry, fcl::Transform3d::Identity())) continue;
       if (const auto t = meeting(actor, standing, when, lift_m)) {
         const std::size_t triangle = nearest(actor, standing, *t, lift_m).of_second;
         refuse(actor, "what stands there (" + scene.meshes[scenery.mesh.at(triangle)].name + ")", *t, scenario_name);
@@ -339,8 +446,8 @@ void check_against_what_stands(const scenes::Scene& scene, const std::vector<Bod
 
 }  // namespace
 
-void check_collisions(const scenes::Scene& scene, const core::SmoothTrajectory& ego, const EgoBox& box, Time end,
-                      const std::string& scenario_name) {
+void check_collisions(const scenes::Scene& scene, const core::SmoothTrajectory& ego, const truth::BodyBox& box,
+                      Time end, const std::string& scenario_name) {
   if (scene.actors.empty()) return;
   end = std::min(end, ego.end());
   const auto shapes = std::make_shared<Shapes>(scene);

@@ -104,6 +104,24 @@ void read_column_times(const ConfigNode& node, LidarOptions& lidar) {
   lidar.column_times.clear();
 }
 
+/// Options that the ones beside them leave without effect.
+void refuse_idle(const ConfigNode& node, const LidarOptions& lidar) {
+  const lidar::SpinOptions usual;
+  if (lidar.spin.rate_jitter == 0 && lidar.spin.correlation_s != usual.correlation_s)
+    node.child("spin").fail_at("correlation_s", "has no effect here: only with rate_jitter; take it away or add that");
+  const lidar::NoiseOptions& noise = lidar.noise;
+  if (noise.range_scale == 0 && lidar.beam.range_noise == "snr")
+    node.child("beam").fail_at("range_noise",
+                               "has no effect here: noise.range_scale is 0; take it away or let there be noise");
+}
+
+void refuse_idle(const ConfigNode& node, const ImuOptions& imu) {
+  if (imu.sampling != "low-pass" && imu.low_pass_hz != ImuOptions().low_pass_hz)
+    node.fail_at(
+        "low_pass_hz",
+        fmt::format("has no effect here: sampling is {}; take it away or say `sampling: low-pass`", imu.sampling));
+}
+
 /// The blocks of the rig's LiDARs; one that is absent where the rig says nothing of any.
 std::vector<ConfigNode> lidar_nodes(const ConfigNode& rig) {
   const ConfigNode list = rig.child("lidars");
@@ -120,6 +138,7 @@ std::vector<ConfigNode> lidar_nodes(const ConfigNode& rig) {
 RigOptions read_rig(const ConfigNode& rig) {
   RigOptions options;
   options.has_imu = rig.child("imu").present();
+  options.body.sized = lidar::gives_size(rig.child("body"));
   options.listed = rig.child("lidars").present();
   const std::vector<ConfigNode> nodes = lidar_nodes(rig);
   options.lidars.resize(nodes.size());
@@ -129,7 +148,8 @@ RigOptions read_rig(const ConfigNode& rig) {
     read_sensor(nodes[k], options.lidars[k]);
     read_mode(nodes[k], options.lidars[k]);
     read_column_times(nodes[k], options.lidars[k]);
-    lidar::check_beam(nodes[k].child("beam"), options.lidars[k].beam, options.lidars[k].profile);
+    lidar::complete_beam(nodes[k].child("beam"), options.lidars[k].beam, options.lidars[k].profile);
+    refuse_idle(nodes[k], options.lidars[k]);
     lidar::check_body(rig.child("body"), options.body, options.lidars[k].T_body_lidar);
     try {
       firing_table(options, 1, k);
@@ -137,6 +157,7 @@ RigOptions read_rig(const ConfigNode& rig) {
       nodes[k].fail(error.what());
     }
   }
+  if (options.has_imu) refuse_idle(rig.child("imu"), options.imu);
   if (options.has_imu && options.imu.rate_hz > imu_model(options.imu.model).max_rate_hz)
     rig.child("imu").fail_at("rate_hz", fmt::format("{} Hz is more than {} gives; at most {} Hz", options.imu.rate_hz,
                                                     options.imu.model, imu_model(options.imu.model).max_rate_hz));

@@ -227,19 +227,24 @@ Workload workload_of(const ConfigNode& rig, Duration duration, bool point_truth)
 
 namespace {
 
-/// What must not be run into: the rig's body; a van where the scenario says nothing of it.
-EgoBox ego_box(const ConfigNode& rig, const lidar::BodyOptions& body) {
-  if (!rig.child("body").present()) return {};
-  if (body.kind == "none" || body.kind == "box")
-    return {body.length_m, body.width_m, body.height_m, body.rear_overhang_m};
+/// What must not be run into: the rig's body where it has a size, what the motion carries where not.
+truth::BodyBox ego_box(const lidar::BodyOptions& body, const truth::BodyBox& of_motion) {
+  if (body.sized)
+    return {.length_m = body.length_m,
+            .width_m = body.width_m,
+            .rear_overhang_m = body.rear_overhang_m,
+            .height_m = body.height_m};
+  if (!body.any()) return of_motion;
   Eigen::Vector3f low = Eigen::Vector3f::Zero(), high = low;
   for (const Eigen::Vector3f& p : lidar::body_mesh(body).vertices) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
   const Eigen::Vector3d size = (high - low).cast<double>();
-  return {size.x(), 2 * static_cast<double>(std::max(high.y(), -low.y())), static_cast<double>(high.z()),
-          static_cast<double>(-low.x())};
+  return {.length_m = size.x(),
+          .width_m = 2 * static_cast<double>(std::max(high.y(), -low.y())),
+          .rear_overhang_m = static_cast<double>(-low.x()),
+          .height_m = static_cast<double>(high.z())};
 }
 
 }  // namespace
@@ -248,7 +253,7 @@ void check(const SimulationInput& input) {
   const Setup setup = read_setup(input);
   for (std::size_t k = 0; k < setup.rig.lidars.size(); ++k)
     sweeps_within(firing_table(setup.rig, input.seed, k), input);
-  check_collisions(*input.scene, *input.motion, ego_box(input.rig, setup.rig.body), Time(input.duration),
+  check_collisions(*input.scene, *input.motion, ego_box(setup.rig.body, input.body), Time(input.duration),
                    input.scenario_name);
 }
 

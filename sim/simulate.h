@@ -11,6 +11,7 @@
 #include "core/progress.h"
 #include "core/trajectory.h"
 #include "scenes/scene.h"
+#include "sim/truth/body_box.h"
 
 namespace tarmac::sim {
 
@@ -22,6 +23,7 @@ struct SimulationInput {
   std::shared_ptr<const core::SmoothTrajectory> motion;
   core::ConfigNode rig;           ///< the scenario's `rig:` block: {lidar: {...}, imu: {...}, gravity_m_s2}
   std::string resolved_scenario;  ///< stored as truth/scenario.yaml
+  truth::BodyBox body;            ///< of truth::body_box; collisions are looked for with it where `rig` gives no size
   std::string resolved_motion;    ///< of sim::truth::resolve_motion; stored as truth/motion.yaml
   core::ConfigNode faults;        ///< the scenario's `faults:` block; absent: nothing is wrong
   bool point_truth = false;       ///< store true range, normal and incidence of every point beside its label
@@ -46,8 +48,8 @@ struct SimulationSummary {
   int threads = 1;              ///< that were used: as asked for, at most the processors there are
 };
 
-/// How much a drive is, before it is simulated. `bytes`: what recording and truth about take on the disk where most beams
-/// return something; open skies take less.
+/// How much a drive is, before it is simulated. `bytes`: what recording and truth about take on the disk where most
+/// beams return something; open skies take less.
 struct Workload {
   std::size_t sweeps = 0, rays = 0;
   double bytes = 0;

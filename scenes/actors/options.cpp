@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "core/error.h"
 
@@ -69,6 +72,33 @@ void visit_movement(ActorOptions& o, core::OptionVisitor& v) {
     {.above = 0, .at_most = 12});
 }
 
+/// Options that are read, and that the others leave without effect.
+void refuse_idle(const core::ConfigNode& node, const ActorOptions& o) {
+  const ActorOptions usual;
+  const auto idle = [](const core::ConfigNode& at, bool given, const char* name, const char* why) {
+    if (given) at.fail_at(name, std::string("has no effect here: ") + why);
+  };
+  const bool places = !o.way_points.empty();
+  const bool timed =
+      std::any_of(o.way_points.begin(), o.way_points.end(), [](const WayPoint& p) { return p.at_s >= 0; });
+  const core::ConfigNode start = node.child("start");
+  for (const auto& [name, value] :
+       {std::pair{"x_m", o.start.x_m}, std::pair{"y_m", o.start.y_m}, std::pair{"heading_deg", o.start.heading_deg}})
+    idle(start, places && value != 0, name, "the path begins at the first way point, toward the second: take it away");
+  idle(start, timed && o.start.speed_m_s > 0, "speed_m_s", "the way points have times: take it away");
+  idle(node, !places && o.corner_radius_m != usual.corner_radius_m, "corner_radius_m",
+       "there are no way points: take it away");
+  idle(node, timed && o.rest_s > 0, "rest_s", "the way points have times: say with the first one when it leaves");
+  idle(node, o.rest_s > 0 && o.start.speed_m_s > 0, "rest_s",
+       "start.speed_m_s says that it moves from the begin: give one of them");
+  const bool moves = timed || !o.speed.empty() || o.start.speed_m_s > 0;
+  idle(node, !moves && o.rest_s > 0, "rest_s", "without speed it stands for good: give speed, or take it away");
+  idle(node, !moves && o.stop_peak_m_s2 != usual.stop_peak_m_s2, "stop_peak_m_s2",
+       "without speed it stands for good: give speed, or take it away");
+  idle(node, o.arms_raised_from_s < 0 && o.beckon_hz != usual.beckon_hz, "beckon_hz",
+       "the arms are never raised: give arms_raised_from_s and arms_raised_until_s");
+}
+
 }  // namespace
 
 void ActorOptions::visit(core::OptionVisitor& v) {
@@ -103,6 +133,7 @@ std::vector<ActorOptions> read_actor_options(const core::ConfigNode& node) {
     if (!item.is_block()) item.fail("must be a block such as {kind: bus, start: {...}, path: [...], speed: [...]}");
     ActorOptions& actor = actors.emplace_back();
     item.read(actor);
+    refuse_idle(item, actor);
     const ActorKind& kind = actor_kind(actor.kind);
     if (actor.name.empty()) actor.name = fmt::format("{}-{}", actor.kind, actors.size());
     if (!names.insert(actor.name).second) item.fail("there are two actors called '" + actor.name + "'");

@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "scenes/equipment/equipment.h"
 #include "scenes/equipment/person.h"
+#include "scenes/outdoors/outdoors.h"
 
 namespace tarmac::scenes {
 
@@ -31,6 +32,8 @@ const std::vector<EquipmentEntry>& entries() {
       {"fire-tender", "airport fire engine, four axles", vehicle, 12.0, 3.0, 3.75, 0.45, add_fire_tender},
       {"follow-me-car", "car with a chequered board", vehicle, 4.8, 1.9, 1.75, 0.5, add_follow_me_car},
       {"ground-power-unit", "towed generator", ground_equipment, 3.2, 1.9, 2.0, 0.85, add_ground_power_unit},
+      {"hatchback", "small car", vehicle, 4.1, 1.76, 1.48, 0.3,
+       [](MeshBuilder& b) { add_car(b, CarShape::hatchback, MaterialId::gse_paint_white); }},
       {"hydrant-dispenser", "pumps fuel from a pit", vehicle, 7.5, 2.4, 3.0, 0.40, add_hydrant_dispenser},
       {"lavatory-truck", "waste truck with a servicing platform", vehicle, 7.0, 2.2, 2.8, 0.42, add_lavatory_truck},
       {"marshaller", "person of 1.75 m in high-visibility clothing with two wands", person, 0.27, 0.5, 1.75, 0.5,
@@ -44,12 +47,16 @@ const std::vector<EquipmentEntry>& entries() {
       {"pushback-tractor-wide", "conventional tractor for wide bodies", vehicle, 9.5, 3.3, 2.0, 0.25,
        [](MeshBuilder& b) { add_pushback_tractor(b, true); }},
       {"refueller", "fuel truck with its own tank", vehicle, 10.0, 2.5, 3.3, 0.40, add_refueller},
+      {"saloon", "car", vehicle, 4.6, 1.82, 1.46, 0.3,
+       [](MeshBuilder& b) { add_car(b, CarShape::saloon, MaterialId::car_paint_dark); }},
       {"towbar", "towbar for narrow bodies", ground_equipment, 4.0, 1.02, 0.51, 0.02,
        [](MeshBuilder& b) { add_towbar(b, false); }},
       {"towbar-wide", "towbar for wide bodies", ground_equipment, 5.5, 1.02, 0.51, 0.02,
        [](MeshBuilder& b) { add_towbar(b, true); }},
       {"towbarless-tractor", "lifts the nose wheels on a cradle", vehicle, 8.5, 4.0, 2.2, 0.12, add_towbarless_tractor},
       {"uld", "lower-deck container, AKE", ground_equipment, 2.007, 1.534, 1.626, 0, add_uld},
+      {"van", "delivery van", vehicle, 5.3, 2.0, 2.25, 0.3,
+       [](MeshBuilder& b) { add_car(b, CarShape::van, MaterialId::gse_paint_white); }},
   };
   return all;
 }

@@ -26,6 +26,8 @@ PlanarPath::PlanarPath(const StartOptions& start, std::span<const PathPiece> pie
       continue;
     }
     if (piece.straight_m != 0) {
+      if (piece.radius_m != PathPiece{}.radius_m || piece.blend_m != PathPiece{}.blend_m)
+        problems.push_back({i, "radius_m and blend_m are of turns, and this is a straight: take them away"});
       append(piece.straight_m, 0);
       continue;
     }

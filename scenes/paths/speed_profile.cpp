@@ -28,6 +28,10 @@ void SpeedProfile::add(const SpeedEvent& event, std::size_t index, std::vector<P
   if ((event.at_s >= 0) + (event.at_m >= 0) + (event.by_m >= 0) > 1) {
     return refuse("at_s, at_m and by_m exclude each other: give one of them");
   }
+  if (event.wait_s > 0 && (event.at_s >= 0 || event.at_m >= 0 || event.by_m >= 0))
+    return refuse("wait_s has no effect beside at_s, at_m or by_m: give one of them");
+  if (event.abs_m_s2 == 0 && event.abs_hz != SpeedEvent{}.abs_hz)
+    return refuse("abs_hz has no effect without abs_m_s2: give both or none");
   Ramp ramp{now_s + event.wait_s, 0, v_m_s, event.to_m_s - v_m_s, 0};
   ramp.duration_s = smooth_step_peak_slope * std::abs(ramp.change_m_s) / event.peak_m_s2;
   ramp.onset_s = event.onset_s, ramp.abs_m_s2 = event.abs_m_s2, ramp.abs_hz = event.abs_hz;

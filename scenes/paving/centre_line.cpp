@@ -89,7 +89,20 @@ CentreLine::Place CentreLine::project(const Vector2d& p_m) const {
     foot = at(s);
     if (std::abs(step) < 1e-11) break;
   }
-  return {s, (p_m - foot.p_m).dot(foot.left), foot};
+  Place place{s, (p_m - foot.p_m).dot(foot.left), foot};
+  // Beyond the ends the line goes on straight: far out, and beside another branch, the search begins at the wrong
+  // place.
+  double distance = (p_m - foot.p_m).norm();
+  const auto go_on = [&](const Point& end, double end_s_m, double beyond_m, bool is_beyond) {
+    const double d_m = (p_m - end.p_m).dot(end.left);
+    if (!is_beyond || std::abs(d_m) > distance - 1e-9) return;
+    distance = std::abs(d_m);
+    place = {end_s_m + beyond_m, d_m, moved_straight(end, beyond_m)};
+  };
+  go_on(first_, 0, before, before < 0);
+  const double behind = (p_m - last_.p_m).dot(last_.tangent);
+  go_on(last_, length_m_, behind, behind > 0);
+  return place;
 }
 
 }  // namespace tarmac::scenes

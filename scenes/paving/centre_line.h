@@ -31,8 +31,8 @@ class CentreLine {
   Eigen::Vector2d place(double s_m, double d_m) const;
   /// Points at distance d to the left, from s0 to s1 (either way), at most `step_m` apart: a line to paint.
   std::vector<Eigen::Vector2d> offset_line(double s0_m, double s1_m, double d_m, double step_m) const;
-  /// The nearest point of the line. Smooth where the point is nearer to the line than its radius of curvature and no
-  /// other part of the line is as near.
+  /// The nearest point of the line, the straights beyond its ends included, however far out. Smooth where the point is
+  /// nearer to the line than its radius of curvature and no other part of the line is as near.
   Place project(const Eigen::Vector2d& p_m) const;
 
  private:

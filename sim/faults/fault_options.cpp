@@ -94,9 +94,29 @@ void check_intervals(const ConfigNode& list) {
   }
 }
 
+/// Options that the others leave without effect.
+void refuse_idle(const ConfigNode& node, const LidarFaultOptions& o) {
+  const LidarFaultOptions usual;
+  const auto idle = [&](bool given, const char* name, const char* why) {
+    if (given) node.fail_at(name, fmt::format("has no effect here: {}; take it away or add that", why));
+  };
+  idle(!o.point_time_float32 && o.float32_epoch_s != usual.float32_epoch_s, "float32_epoch_s",
+       "only with point_time_float32");
+  const bool packets = o.packet_jitter_ms > 0 || o.point_time_per_packet || o.lost_packets > 0;
+  idle(!packets && o.packet_columns != usual.packet_columns, "packet_columns",
+       "only with packet_jitter_ms, point_time_per_packet or lost_packets");
+  const bool other_times = o.packet_jitter_ms > 0 || o.point_time_per_packet || o.point_time_reversed ||
+                           o.point_time_float32 || o.point_time_step_ms > 0 || o.point_time_scale != 1 ||
+                           o.point_time_unit != usual.point_time_unit || o.point_time_origin != usual.point_time_origin;
+  if (o.point_time_missing && other_times)
+    node.fail_at("point_time_missing",
+                 "stands beside other faults of point times, and there are none then: give one of them");
+}
+
 void check_lidar(const ConfigNode& node, const LidarFaultOptions& options, double sweep_rate_hz) {
   check_intervals(node.child("sweep_gaps"));
   check_intervals(node.child("lost_sectors"));
+  refuse_idle(node, options);
   const double most = std::numeric_limits<std::int32_t>::max() * 1e-9 * sweep_rate_hz / 2;
   if (options.time_factor() > most)
     node.fail_at("point_time_scale", fmt::format("{} stretches a sweep at {} Hz beyond the 2.1 s that a recording's "

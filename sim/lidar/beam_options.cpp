@@ -36,7 +36,45 @@ bool BeamOptions::any() const {
          range_noise != "sheet" || false_alarms_per_shot > 0;
 }
 
-void check_beam(const core::ConfigNode& node, const BeamOptions& options, const Profile& profile) {
+namespace {
+
+/// An option that the other ones leave without effect is a mistake, unless it says what it says by default.
+template <class Value>
+void refuse_idle(const core::ConfigNode& node, bool used, const char* name, const Value& value, const Value& by_default,
+                 const char* what_uses_it) {
+  if (!used && value != by_default)
+    node.fail_at(name, fmt::format("has no effect here: {}; take it away or add that", what_uses_it));
+}
+
+void check_idle(const core::ConfigNode& node, const BeamOptions& o, const Profile& profile) {
+  const BeamOptions usual;
+  if (o.halo && profile.by_prism())
+    node.fail_at("halo",
+                 fmt::format("has no effect here: {} has one beam behind its prisms, none beside it: take it away",
+                             profile.name));
+  if (profile.by_prism() && o.rays > 1 && node.child("footprint").present() && o.footprint == "adaptive")
+    node.fail_at("footprint",
+                 fmt::format("has no effect here: the beams of {} lie beside each other in no order, all rays are "
+                             "traced: take it away or say `full`",
+                             profile.name));
+  const bool wide = o.rays > 1, several = wide || o.glass || o.halo;
+  refuse_idle(node, wide, "footprint", o.footprint, usual.footprint, "a beam of one ray is a line (rays: 3 or 7)");
+  refuse_idle(node, several || o.false_alarms_per_shot > 0, "returns", o.returns, usual.returns,
+              "a beam has one echo at most (rays: 3 or 7, glass, halo or false_alarms_per_shot give more)");
+  refuse_idle(node, several, "pulse_length_ns", o.pulse_length_ns, usual.pulse_length_ns,
+              "a beam has one echo at most, there is nothing to tell apart (rays: 3 or 7, glass or halo)");
+  refuse_idle(node, o.glass, "ghosts", o.ghosts, usual.ghosts, "only with glass");
+  refuse_idle(node, o.glass, "pane_flatness_deg", o.pane_flatness_deg, usual.pane_flatness_deg, "only with glass");
+  refuse_idle(node, o.saturation, "saturation_signal", o.saturation_signal, usual.saturation_signal,
+              "only with saturation");
+  refuse_idle(node, o.saturation, "saturation_bias_m", o.saturation_bias_m, usual.saturation_bias_m,
+              "only with saturation");
+  refuse_idle(node, o.range_noise == "snr", "spot_smear", o.spot_smear, usual.spot_smear, "only with range_noise: snr");
+}
+
+}  // namespace
+
+void complete_beam(const core::ConfigNode& node, BeamOptions& options, const Profile& profile) {
   if (options.rays != 1 && options.rays != 3 && options.rays != 7)
     node.fail_at("rays", fmt::format("{} is no footprint; 1, 3 or 7 rays are", options.rays));
   const bool needs_width = options.rays > 1 || options.glass || options.halo || options.range_noise == "snr";
@@ -45,6 +83,8 @@ void check_beam(const core::ConfigNode& node, const BeamOptions& options, const 
         fmt::format("needs the width of the beams, and the profile of {} has no divergence_mrad: add "
                     "`divergence_mrad: [HORIZONTAL, VERTICAL]`, or take away rays, glass, halo and range_noise",
                     profile.name));
+  check_idle(node, options, profile);
+  if (profile.by_prism() && options.rays > 1) options.footprint = "full";
 }
 
 }  // namespace tarmac::sim::lidar

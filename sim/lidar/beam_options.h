@@ -32,8 +32,9 @@ struct BeamOptions {
   bool dual() const { return returns == "dual"; }
 };
 
-/// Throws InputError at `node` (the block) for a number of rays that is none of 1, 3 and 7, or where the sensor's
-/// profile does not say how wide its beams are.
-void check_beam(const core::ConfigNode& node, const BeamOptions& options, const Profile& profile);
+/// Says `full` where that is how footprints are traced anyway (behind prisms). Throws InputError at `node` (the block)
+/// for a number of rays that is none of 1, 3 and 7, where the sensor's profile does not say how wide its beams are, and
+/// for options that have no effect beside the others or with this sensor.
+void complete_beam(const core::ConfigNode& node, BeamOptions& options, const Profile& profile);
 
 }  // namespace tarmac::sim::lidar

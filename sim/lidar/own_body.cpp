@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "scenes/equipment/equipment.h"
 #include "scenes/materials/materials.h"
+#include "scenes/primitives/inside.h"
 #include "scenes/primitives/mesh_builder.h"
 
 namespace tarmac::sim::lidar {
@@ -44,10 +45,27 @@ std::shared_ptr<const scenes::Scene> scene_of(scenes::Mesh mesh) {
 
 void BodyOptions::visit(core::OptionVisitor& v) {
   v("kind", kind, "none (beams do not see it), box, or a name of scenes/equipment such as baggage-tractor");
-  v("length_m", length_m, "from rear to front", {.above = 0, .at_most = 100});
-  v("width_m", width_m, "of the body", {.above = 0, .at_most = 100});
-  v("height_m", height_m, "of its top above the ground", {.above = underside_m, .at_most = 100});
-  v("rear_overhang_m", rear_overhang_m, "from the rear axle back to the rear", {.at_least = 0, .at_most = 100});
+  if (sized) {
+    v("length_m", length_m, "from rear to front; with kind none: of what others must not run into, as are the next",
+      {.above = 0, .at_most = 100});
+    v("width_m", width_m, "of the body", {.above = 0, .at_most = 100});
+    v("height_m", height_m, "of its top above the ground", {.above = underside_m, .at_most = 100});
+  }
+  if (sized || any())
+    v("rear_overhang_m", rear_overhang_m, "from the rear axle back to the rear", {.at_least = 0, .at_most = 100});
+}
+
+bool gives_size(const core::ConfigNode& node) {
+  const std::string kind = node.child("kind").present() ? node.child("kind").scalar("kind") : BodyOptions{}.kind;
+  const auto& known = scenes::equipment();
+  const bool equipment =
+      std::any_of(known.begin(), known.end(), [&](const scenes::EquipmentEntry& e) { return kind == e.name; });
+  for (const char* size : {"length_m", "width_m", "height_m"}) {
+    if (!node.child(size).present()) continue;
+    if (equipment) node.fail_at(size, fmt::format("{} has a size of its own: take it away", kind));
+    return true;
+  }
+  return kind == "box" || (!equipment && node.child("rear_overhang_m").present());
 }
 
 std::vector<std::string> body_kinds() {
@@ -64,8 +82,16 @@ void check_body(const core::ConfigNode& node, const BodyOptions& o, const core::
                  fmt::format("'{}' is no body{}; there are: {}", o.kind,
                              guess.empty() ? "" : fmt::format(", did you mean '{}'?", guess), fmt::join(kinds, ", ")));
   }
-  if (o.kind != "box") return;
+  if (!o.any()) return;
   const Vector3d p = T_body_lidar.translation();
+  if (o.kind != "box") {
+    if (scenes::is_inside(body_mesh(o), p))
+      node.fail(
+          fmt::format("the LiDAR stands at ({}, {}, {}) m, inside a solid part of {}: every beam would end there; move "
+                      "T_body_lidar",
+                      p.x(), p.y(), p.z(), o.kind));
+    return;
+  }
   const bool inside = p.x() > -o.rear_overhang_m && p.x() < o.length_m - o.rear_overhang_m &&
                       std::abs(p.y()) < o.width_m / 2 && p.z() > underside_m && p.z() < o.height_m;
   if (inside)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/config.h"
 #include "core/lie.h"
 #include "core/options.h"
 #include "scenes/scene.h"
@@ -18,12 +19,17 @@ namespace tarmac::sim::lidar {
 struct BodyOptions {
   std::string kind = "none";  ///< or "box", or a name of scenes/equipment
   double length_m = 4.6, width_m = 1.9, height_m = 1.8, rear_overhang_m = 0.9;
+  /// The scenario gives the sizes. Without: a box has the ones above, equipment has its own, and `none` has that of
+  /// what the motion carries (truth::body_box).
+  bool sized = false;
   void visit(core::OptionVisitor& v);
   bool any() const { return kind != "none"; }
 };
 /// What `kind` may be.
 std::vector<std::string> body_kinds();
-/// Throws InputError at `node` (the block) for a kind that is none, or where the sensor would stand inside the box.
+/// What BodyOptions::sized is for the block `node`; an InputError where a size stands beside equipment.
+bool gives_size(const core::ConfigNode& node);
+/// Throws InputError at `node` (the block) for a kind that is none, or where the sensor would stand inside the body.
 void check_body(const core::ConfigNode& node, const BodyOptions& options, const core::SE3& T_body_lidar);
 /// The body as triangles of the body frame: a box from the rear overhang forward, its underside 0.3 m above the ground;
 /// equipment with its rear at the rear overhang. Materials are those of scenes/materials.

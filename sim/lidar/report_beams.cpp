@@ -1,4 +1,6 @@
 // The points of beams that are more than lines: one or two a firing.
+#include <limits>
+
 #include "sim/lidar/sweep_simulator.h"
 
 namespace tarmac::sim::lidar {
@@ -25,7 +27,9 @@ void SweepSimulator::report_return(const Returns& r, std::size_t i, std::size_t 
   out.normal_x[at] = r.nx[i];
   out.normal_y[at] = r.ny[i];
   out.normal_z[at] = r.nz[i];
-  out.cos_incidence[at] = r.echoes.cos_incidence[i];
+  // Noise comes off no surface. The receiver counted with an incidence; it is none.
+  constexpr float none = std::numeric_limits<float>::quiet_NaN();
+  out.cos_incidence[at] = r.kind[i] == truth::ReturnKind::noise ? none : r.echoes.cos_incidence[i];
 }
 
 // Returns how many points there are now.

@@ -131,7 +131,7 @@ void read_point_truth(const ChunkData& chunk, PointLabels& labels) {
 
 }  // namespace
 
-PointLabels labels_from_chunk(const ChunkData& chunk) {
+PointLabels labels_from_chunk(const ChunkData& chunk, Columns columns) {
   PointLabels labels;
   const auto label = chunk.column<std::uint8_t>(0);
   labels.label.reserve(label.size());
@@ -148,11 +148,12 @@ PointLabels labels_from_chunk(const ChunkData& chunk) {
                     labels.instance.size(), labels.moving.size(), labels.t_ns.size()));
   }
   if (chunk.column_count() > kKindColumn) read_kinds(chunk, labels);
-  if (chunk.column_count() > kKindColumn + 1) read_point_truth(chunk, labels);
+  if (columns == Columns::labels_and_point_truth && chunk.column_count() > kKindColumn + 1)
+    read_point_truth(chunk, labels);
   return labels;
 }
 
-std::vector<PointLabels> GroundTruth::labels(std::size_t lidar) const {
+std::vector<PointLabels> GroundTruth::labels(std::size_t lidar, Columns columns) const {
   const std::filesystem::path file = folder / fmt::format("lidar{}_labels.chunks", lidar);
   if (folder.empty() || !std::filesystem::exists(file)) {
     throw InputError(fmt::format("{}: there are no labels of lidar {}: simulate the scenario again to get them",
@@ -161,7 +162,7 @@ std::vector<PointLabels> GroundTruth::labels(std::size_t lidar) const {
   const ChunkReader reader(file);
   std::vector<PointLabels> sweeps;
   sweeps.reserve(reader.size());
-  for (std::size_t i = 0; i < reader.size(); ++i) sweeps.push_back(labels_from_chunk(reader.read(i)));
+  for (std::size_t i = 0; i < reader.size(); ++i) sweeps.push_back(labels_from_chunk(reader.read(i), columns));
   return sweeps;
 }
 

@@ -38,7 +38,8 @@ struct PointLabels {
   std::vector<ReturnKind> kind;    ///< empty: all are of kind surface
   /// On request, otherwise empty. The range that the sensor would have told without noise, bias and rounding (counted
   /// as its raw ranges are; of a mixed point the mean that it lies at) [m]; unit normal of the surface, in the world,
-  /// turned towards the sensor, 0 where there is none; cosine of incidence, relief included.
+  /// turned towards the sensor; cosine of incidence, relief included. Noise comes off no surface: its range is the
+  /// drawn one, its normal 0, its incidence NaN.
   std::vector<double> true_range_m;
   std::vector<float> normal_x, normal_y, normal_z, cos_incidence;
 
@@ -49,7 +50,9 @@ struct PointLabels {
   void keep_only(const std::vector<std::size_t>& kept);
 };
 core::ChunkData to_chunk(const PointLabels& labels);
-PointLabels labels_from_chunk(const core::ChunkData& chunk);
+/// What of a point's truth is read: the columns on request are twice as large as all the others together.
+enum class Columns { labels, labels_and_point_truth };
+PointLabels labels_from_chunk(const core::ChunkData& chunk, Columns columns = Columns::labels_and_point_truth);
 
 /// One injected fault as the log has it.
 struct Fault {
@@ -68,8 +71,9 @@ struct GroundTruth {
   core::ConfigNode config;       ///< truth/scenario.yaml
   std::filesystem::path folder;  ///< empty when it was not loaded from disk
 
-  /// Labels of every sweep of one LiDAR; throws InputError when they were not stored.
-  std::vector<PointLabels> labels(std::size_t lidar = 0) const;
+  /// Labels of every sweep of one LiDAR; throws InputError when they were not stored. Without being asked for the
+  /// columns on request stay on the disk.
+  std::vector<PointLabels> labels(std::size_t lidar = 0, Columns columns = Columns::labels) const;
 };
 
 /// Rebuilds the motion from truth/scenario.yaml and its seed. Throws InputError when the folder is no truth.

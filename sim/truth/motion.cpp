@@ -16,6 +16,7 @@
 #include "sim/truth/handheld_options.h"
 #include "sim/truth/recorded.h"
 #include "sim/truth/towed.h"
+#include "sim/truth/vehicles.h"
 
 namespace tarmac::sim::truth {
 
@@ -49,6 +50,41 @@ Motion make_still(const ConfigNode& node, Duration duration, std::shared_ptr<con
   return make_constant_twist({.start = read<StillOptions>(node).start}, duration);
 }
 
+BodyBox van(const ConfigNode&) {
+  return {};
+}
+
+BodyBox box_of_drive(const ConfigNode& node) {
+  return vehicle_box(read_drive_options(node).vehicle);
+}
+
+/// A deck from the drawbar's hitch to behind the axle, with what stands on it.
+BodyBox box_of_towed(const ConfigNode& node) {
+  constexpr double rear_overhang_m = 0.9;
+  return {.length_m = read_towed_options(node).links.back().length_m + rear_overhang_m,
+          .width_m = 1.6,
+          .rear_overhang_m = rear_overhang_m,
+          .height_m = 2};
+}
+
+/// Somebody of 1.8 m who stands `ahead_m` from the device, whichever way it looks.
+BodyBox box_of_handheld(const ConfigNode& node) {
+  const HoldOptions hold = read_handheld_options(node).hold;
+  const double around_m = hold.ahead_m + 0.2;
+  return {.length_m = 2 * around_m,
+          .width_m = 2 * around_m,
+          .rear_overhang_m = around_m,
+          .height_m = std::max(0.2, 1.8 - hold.height_m),
+          .below_m = hold.height_m,
+          .upright = true};
+}
+
+/// A multirotor with its rotors' circles.
+BodyBox box_of_drone(const ConfigNode& node) {
+  const double legs_m = read_drone_options(node).take_off.legs_m;
+  return {.length_m = 1.1, .width_m = 1.1, .rear_overhang_m = 0.55, .height_m = 0.25, .below_m = legs_m};
+}
+
 /// The text of what `reader` makes of the block.
 template <auto reader>
 std::string resolve(const ConfigNode& node) {
@@ -66,44 +102,45 @@ struct Kind {
   Motion (*make)(const ConfigNode&, Duration, std::shared_ptr<const scenes::Ground>, std::uint64_t);
   std::string (*resolve)(const ConfigNode&);
   std::vector<OptionDescription> (*describe)();
+  BodyBox (*box)(const ConfigNode&);
   const char* function_class;
 };
 
 /// A new kind of motion is one line here.
 constexpr std::array kinds{
     Kind{"drive", "a road vehicle that follows a path, brakes, sways on its suspension and shakes", make_drive,
-         resolve<read_drive_options>, describe<DriveOptions>,
+         resolve<read_drive_options>, describe<DriveOptions>, box_of_drive,
          "speeds and curvatures change by (1 + tanh(1/(1-u) - 1/u over 2))/2, infinitely differentiable and not "
          "analytic; "
          "sines of the distance for ripple, wander, road and tyres, and of the time for the engine; position by "
          "quadrature; heave, pitch and roll solve an oscillator's equation (degree 7 every ms)"},
     Kind{"towed", "a trailer behind a tug, the sensor on its last link", make_towed, resolve<read_towed_options>,
-         describe<TowedOptions>,
+         describe<TowedOptions>, box_of_towed,
          "the tug as a drive; the links' headings solve the equation of axles that do not slip, over the distance "
          "(degree "
          "7 every 2 cm of it), and the place follows from them; heave, pitch and roll as a drive's"},
     Kind{"handheld", "a device in the hands of somebody who walks or runs", make_handheld,
-         resolve<read_handheld_options>, describe<HandheldOptions>,
+         resolve<read_handheld_options>, describe<HandheldOptions>, box_of_handheld,
          "path and speed as a drive's; sines of the steps' phase, which is a sum of sines of the distance; strikes are "
          "damped sines that swell and end by the infinitely differentiable step; tremor and posture are sines of the "
          "time"},
     Kind{"drone", "a multirotor that takes off and follows a path in gusts", make_drone, resolve<read_drone_options>,
-         describe<DroneOptions>,
+         describe<DroneOptions>, box_of_drone,
          "path and speed as a drive's, heights by the infinitely differentiable step; gusts and what the drone gives "
          "way "
          "to them are sines of the time; the attitude is that of the thrust: a quotient of these; rotors are sines"},
     Kind{"recorded", "poses of a TUM or CSV file, followed smoothly", make_from_path, resolve<read_recorded_options>,
-         describe<RecordedOptions>,
+         describe<RecordedOptions>, van,
          "polynomials of degree 7 through eight recorded poses each, blended around every recorded time by the "
          "infinitely "
          "differentiable step over windows whose ends lie on no regular grid; quaternions divided by their length"},
     Kind{"constant-twist", "one screw motion: a control", make_twist, resolve<read<ConstantTwistOptions>>,
-         describe<ConstantTwistOptions>,
+         describe<ConstantTwistOptions>, van,
          "T(0) Exp(t xi): the class of two-pose screw interpolation, hence a control and not a judge"},
     Kind{"straight", "one velocity: a control", make_straight, resolve<read<StraightOptions>>,
-         describe<StraightOptions>,
+         describe<StraightOptions>, van,
          "linear in time: the class of every interpolation, hence a control and not a judge"},
-    Kind{"still", "no motion: a control", make_still, resolve<read<StillOptions>>, describe<StillOptions>,
+    Kind{"still", "no motion: a control", make_still, resolve<read<StillOptions>>, describe<StillOptions>, van,
          "constant: the class of every interpolation, hence a control and not a judge"},
 };
 
@@ -143,6 +180,10 @@ std::shared_ptr<const SmoothTrajectory> make_motion(const ConfigNode& node, Dura
 std::string resolve_motion(const ConfigNode& node) {
   const Kind& kind = kind_of(node);
   return fmt::format("  kind: {}\n{}", kind.name, kind.resolve(node));
+}
+
+BodyBox body_box(const ConfigNode& node) {
+  return kind_of(node).box(node);
 }
 
 std::vector<std::string> motion_kinds() {

@@ -10,6 +10,7 @@
 #include "core/config.h"
 #include "core/trajectory.h"
 #include "scenes/scene.h"
+#include "sim/truth/body_box.h"
 
 namespace tarmac::sim::truth {
 
@@ -20,6 +21,10 @@ std::shared_ptr<const core::SmoothTrajectory> make_motion(const core::ConfigNode
                                                           std::uint64_t seed);
 /// The motion block with every option written out, indented by 2.
 std::string resolve_motion(const core::ConfigNode& node);
+/// What moves, where the rig does not say it: a `drive` its vehicle, `towed` the trailer (without the tug), `handheld`
+/// a person around the device, `drone` the airframe down to its legs; the others a van. Throws InputError as
+/// make_motion.
+BodyBox body_box(const core::ConfigNode& node);
 std::vector<std::string> motion_kinds();
 /// One line. Throws InputError for an unknown kind, as does the next.
 std::string motion_summary(const std::string& kind);

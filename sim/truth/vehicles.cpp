@@ -6,6 +6,7 @@ namespace {
 
 struct Vehicle {
   const char* name;
+  BodyBox box;
   SuspensionOptions suspension;
   VibrationOptions vibration;
 };
@@ -15,8 +16,9 @@ struct Vehicle {
 /// are an estimate from its mass on large tyres.
 const std::vector<Vehicle>& vehicles() {
   static const std::vector<Vehicle> all = {
-      {"van", {}, {}},
+      {"van", {}, {}, {}},
       {"car",
+       {.length_m = 4.5, .width_m = 1.8, .rear_overhang_m = 0.9, .height_m = 1.5},
        {.wheelbase_m = 2.7,
         .track_m = 1.55,
         .centre_height_m = 0.5,
@@ -35,6 +37,7 @@ const std::vector<Vehicle>& vehicles() {
         .rolling_rms_m_s2 = 0.08,
         .rolling_rms_deg_s = 0.05}},
       {"bus",
+       {.length_m = 12, .width_m = 2.55, .rear_overhang_m = 3.4, .height_m = 3.1},
        {.wheelbase_m = 5.9,
         .track_m = 2.05,
         .centre_height_m = 0.9,
@@ -53,6 +56,7 @@ const std::vector<Vehicle>& vehicles() {
         .rolling_rms_m_s2 = 0.07,
         .rolling_rms_deg_s = 0.05}},
       {"baggage-tractor",
+       {.length_m = 3.05, .width_m = 1.7, .rear_overhang_m = 0.75, .height_m = 2.05},
        {.wheelbase_m = 1.5,
         .track_m = 1.4,
         .centre_height_m = 0.6,
@@ -71,6 +75,7 @@ const std::vector<Vehicle>& vehicles() {
         .rolling_rms_m_s2 = 0.2,
         .rolling_rms_deg_s = 0.15}},
       {"pushback-tractor",
+       {.length_m = 6, .width_m = 2.7, .rear_overhang_m = 1.3, .height_m = 2.35},
        {.wheelbase_m = 3.3,
         .track_m = 2.2,
         .centre_height_m = 0.9,
@@ -98,6 +103,12 @@ std::vector<std::string> vehicle_names() {
   std::vector<std::string> names;
   for (const Vehicle& vehicle : vehicles()) names.emplace_back(vehicle.name);
   return names;
+}
+
+BodyBox vehicle_box(const std::string& name) {
+  for (const Vehicle& vehicle : vehicles())
+    if (name == vehicle.name) return vehicle.box;
+  return {};
 }
 
 void set_vehicle(const std::string& name, SuspensionOptions& suspension, VibrationOptions& vibration) {

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <set>
 #include <thread>
 #include <tuple>
+#include <utility>
 
 #include "core/random.h"
 #include "tests/support/temporary_folder.h"
@@ -119,6 +122,49 @@ TEST(MergedSweeps, EveryPointOfTheFirstLidarsPeriodsIsThereOnceInOrderOfTimeAndI
         const bool inside = t >= time_from_ns(1000 * ms) && t < time_from_ns(1800 * ms);
         EXPECT_EQ(seen.count({lidar, k, p}), inside ? 1u : 0u) << lidar << " " << k << " " << p;
       }
+}
+
+/// Quantised stamps tie, reversed ones go back: neither may mix up what one LiDAR fired after the other.
+TEST(MergedSweeps, FaultyStampsDoNotLoseTheOrderInWhichALidarFired) {
+  const TemporaryFolder folder;
+  auto streams = three_streams();
+  for (LidarSweep& sweep : streams[0])
+    for (std::int32_t& t_ns : sweep.t_ns)
+      t_ns = t_ns / static_cast<std::int32_t>(10 * ms) * static_cast<std::int32_t>(10 * ms);
+  for (LidarSweep& sweep : streams[1])
+    for (std::int32_t& t_ns : sweep.t_ns)
+      t_ns = t_ns / static_cast<std::int32_t>(7 * ms) * static_cast<std::int32_t>(7 * ms);
+  for (LidarSweep& sweep : streams[2])
+    for (std::int32_t& t_ns : sweep.t_ns) t_ns = static_cast<std::int32_t>((sweep.end - sweep.begin).count()) - t_ns;
+  const Recording recording = write(folder / "rec", rig_of_three(), streams);
+  const MergedSweeps merged(recording);
+  std::size_t backward = 0;
+  for (std::size_t k = 0; k < merged.count(); ++k) {
+    std::vector<PointSource> sources;
+    const LidarSweep sweep = merged.sweep(k, &sources);
+    std::map<std::uint16_t, std::pair<std::uint32_t, std::uint32_t>> last;
+    std::optional<Time> last_of_two;
+    for (std::size_t i = 0; i < sweep.size(); ++i) {
+      const PointSource& from = sources[i];
+      ASSERT_EQ(sweep.time(i), streams[from.lidar][from.sweep].time(from.point));
+      const std::pair place{from.sweep, from.point};
+      const auto [before, is_first] = last.try_emplace(from.lidar, place);
+      if (!is_first) {
+        ASSERT_LT(before->second, place) << "lidar " << from.lidar << " of sweep " << k;
+      }
+      before->second = place;
+      // Those whose stamps never go back are in order of time among each other.
+      if (from.lidar < 2) {
+        if (last_of_two) {
+          ASSERT_GE(sweep.time(i), *last_of_two);
+        }
+        last_of_two = sweep.time(i);
+      }
+      if (i > 0 && sweep.t_ns[i] < sweep.t_ns[i - 1]) ++backward;
+    }
+    EXPECT_EQ(last.size(), 3u);
+  }
+  EXPECT_GT(backward, 0u) << "the faulty stamps are not mended";
 }
 
 TEST(MergedSweeps, TheRigIsOneLidarInTheBodysFrame) {

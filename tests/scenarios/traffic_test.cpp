@@ -25,6 +25,7 @@ sim::SimulationInput world_of(const scenarios::Scenario& scenario) {
   input.duration = scenario.duration();
   input.scene = std::make_shared<const scenes::Scene>(scenes::make_scene(scenario.scene, input.seed));
   input.motion = sim::truth::make_motion(scenario.motion, scenario.duration(), input.scene->ground, input.seed);
+  input.body = sim::truth::body_box(scenario.motion);
   input.rig = scenario.rig;
   input.faults = scenario.faults;
   return input;
@@ -50,8 +51,7 @@ TEST(Traffic, AFuelTruckThatStaysOnTheVehiclesLaneIsRefusedWithItsLineItsTimeAnd
   const std::size_t rest = text.find("rest_s: 4", truck);
   ASSERT_NE(rest, std::string::npos);
   text.replace(rest, 9, "rest_s: 400");
-  const auto line =
-      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(truck), '\n');
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(truck), '\n');
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "head-on.yaml";
   core::write_file(file, text);
@@ -60,8 +60,8 @@ TEST(Traffic, AFuelTruckThatStaysOnTheVehiclesLaneIsRefusedWithItsLineItsTimeAnd
     FAIL() << "nothing was refused";
   } catch (const core::InputError& error) {
     const std::string message = error.what();
-    EXPECT_TRUE(
-        message.starts_with(file.string() + ":" + std::to_string(line) + ": actor fuel-truck-3 runs into the ego vehicle"))
+    EXPECT_TRUE(message.starts_with(file.string() + ":" + std::to_string(line) +
+                                    ": actor fuel-truck-3 runs into the ego vehicle"))
         << message;
     EXPECT_NE(message.find(" s, near x "), std::string::npos) << message;
   }

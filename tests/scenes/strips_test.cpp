@@ -86,6 +86,33 @@ TEST(CentreLine, ProjectUndoesPlaceOnTheBendAndBeyondBothEnds) {
                std::invalid_argument);
 }
 
+/// A hairpin whose end, gone on, passes its own begin: the nearest sample of the line is on the other branch there, and
+/// a kilometre out there is none.
+TEST(CentreLine, ProjectFindsTheStraightBeyondTheEndsHoweverFarAndBesideAnotherBranch) {
+  StartOptions start;
+  start.x_m = 30;
+  start.y_m = -20;
+  start.heading_deg = 40;
+  const PathPiece leg{.straight_m = 60}, bend{.straight_m = 0, .turn_deg = 180, .radius_m = 30, .blend_m = 20},
+      shorter{.straight_m = 20};
+  const CentreLine line(start, {leg, bend, shorter});
+  const double length_m = line.length_m();
+  double apart_m = (line.at(length_m).p_m - line.at(0).p_m).dot(line.at(0).left);
+  ASSERT_GT(apart_m, 50);
+  for (const double beyond_m : {5.0, 25.0, 39.0, 70.0, 200.0, 1000.0, 20000.0}) {
+    // Nearer to the last leg gone on than to the first one.
+    for (const double d_m : {-20.0, 0.0, 0.45 * apart_m}) {
+      const CentreLine::Place place = line.project(line.place(length_m + beyond_m, d_m));
+      EXPECT_NEAR(place.s_m, length_m + beyond_m, 1e-6) << beyond_m << " " << d_m;
+      EXPECT_NEAR(place.d_m, d_m, 1e-6) << beyond_m << " " << d_m;
+      EXPECT_EQ(place.foot.curvature_per_m, 0);
+    }
+    const CentreLine::Place before = line.project(line.place(-beyond_m, 0.45 * apart_m));
+    EXPECT_NEAR(before.s_m, -beyond_m, 1e-6);
+    EXPECT_NEAR(before.d_m, 0.45 * apart_m, 1e-6);
+  }
+}
+
 TEST(SectionGround, GradientAndHessianMatchCentralDifferencesOnABend) {
   const SectionGround ground(bent_line(), bumpy_section(), 2);
   const core::RandomStream random(1, "test/section_ground");

@@ -81,10 +81,10 @@ class Exporter {
   }
 
   std::size_t sweeps() const { return recording_.sweep_count(lidar_); }
-  std::int64_t index(std::size_t i) const { return recording_.sweep(i, lidar_).index; }
+  LidarSweep sweep(std::size_t i) const { return recording_.sweep(i, lidar_); }
 
-  void write(std::size_t i, const fs::path& file) const {
-    const LidarSweep sweep = recording_.sweep(i, lidar_);
+  /// `sweep` is the i-th.
+  void write(std::size_t i, const LidarSweep& sweep, const fs::path& file) const {
     io::RangeImage image = truth_.labels ? with_table(sweep, i) : without_table(sweep);
     image.sensor = fmt::format("{} (lidar{})", recording_.rig().lidars[lidar_].model, lidar_);
     io::write_range_image(file, image);
@@ -134,10 +134,10 @@ int export_images(const TransferArguments& arguments, const Console& console) {
   const core::Progress progress = console.progress("export");
   bool found = false;
   for (std::size_t i = 0; i < exporter.sweeps(); ++i) {
-    const std::int64_t index = exporter.index(i);
-    if (arguments.sweep >= 0 && index != arguments.sweep) continue;
+    const LidarSweep sweep = exporter.sweep(i);
+    if (arguments.sweep >= 0 && sweep.index != arguments.sweep) continue;
     found = true;
-    exporter.write(i, one_file ? to : to / fmt::format("{:06}.exr", index));
+    exporter.write(i, sweep, one_file ? to : to / fmt::format("{:06}.exr", sweep.index));
     progress(static_cast<double>(i + 1) / static_cast<double>(exporter.sweeps()), "");
   }
   if (!found && arguments.sweep >= 0)

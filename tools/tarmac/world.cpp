@@ -55,6 +55,7 @@ sim::SimulationInput build_world(const scenarios::Scenario& scenario, std::uint6
   input.duration = scenario.duration();
   input.scene = std::make_shared<const scenes::Scene>(scenes::make_scene(scenario.scene, seed));
   input.motion = sim::truth::make_motion(scenario.motion, scenario.duration(), input.scene->ground, seed);
+  input.body = sim::truth::body_box(scenario.motion);
   input.rig = scenario.rig;
   input.faults = scenario.faults;
   input.point_truth = scenario.truth.per_point;

@@ -246,6 +246,27 @@ INSTANTIATE_TEST_SUITE_P(
             "[{to_m_s: "
             "1, peak_m_s2: 0.3}]\n    stop_peak_m_s2: 0.3\n",
             "3", "nose gear"},
+        Bad{"  - kind: bus\n    start:\n      heading_deg: 90\n    way_points: [{x_m: 0, y_m: 0}, {x_m: 90, y_m: 0}]\n",
+            "5", "heading_deg: has no effect here"},
+        Bad{"  - kind: bus\n    start:\n      speed_m_s: 2\n    way_points: [{x_m: 0, y_m: 0, at_s: 0}, {x_m: 90, "
+            "y_m: 0, at_s: 30}]\n",
+            "5", "speed_m_s: has no effect here"},
+        Bad{"  - kind: bus\n    rest_s: 3\n    way_points: [{x_m: 0, y_m: 0, at_s: 0}, {x_m: 90, y_m: 0, at_s: 30}]\n",
+            "4", "rest_s: has no effect here"},
+        Bad{"  - kind: bus\n    rest_s: 3\n    start: {speed_m_s: 5}\n    path: [{straight_m: 90}]\n", "4",
+            "rest_s: has no effect here"},
+        Bad{"  - kind: bus\n    rest_s: 3\n    path: [{straight_m: 90}]\n", "4", "rest_s: has no effect here"},
+        Bad{"  - kind: bus\n    stop_peak_m_s2: 2\n    path: [{straight_m: 90}]\n", "4",
+            "stop_peak_m_s2: has no effect here"},
+        Bad{"  - kind: bus\n    corner_radius_m: 12\n    path: [{straight_m: 90}]\n", "4",
+            "corner_radius_m: has no effect here"},
+        Bad{"  - kind: bus\n    path:\n      - {straight_m: 90, blend_m: 5}\n    speed: [{to_m_s: 2}]\n", "5",
+            "are of turns"},
+        Bad{"  - kind: bus\n    path: [{straight_m: 90}]\n    speed:\n      - {to_m_s: 2, at_s: 4, wait_s: 2}\n", "6",
+            "wait_s has no effect"},
+        Bad{"  - kind: bus\n    path: [{straight_m: 90}]\n    speed:\n      - {to_m_s: 2, abs_hz: 4}\n", "6",
+            "abs_hz has no effect"},
+        Bad{"  - kind: marshaller\n    beckon_hz: 2\n", "4", "beckon_hz: has no effect here"},
         Bad{"  - {kind: bus, name: a}\n  - {kind: bus, name: a}\n", "4", "two actors called 'a'"}));
 
 }  // namespace

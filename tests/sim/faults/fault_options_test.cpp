@@ -47,6 +47,16 @@ TEST(FaultOptions, FaultsOfAnImuThatTheRigHasNotAreRefused) {
               AllOf(HasSubstr("drive.yaml:2"), HasSubstr("no IMU")));
 }
 
+TEST(FaultOptions, ThoseWithoutEffectAreRefused) {
+  EXPECT_THAT(error_of("faults:\n  lidar:\n    float32_epoch_s: 100\n"),
+              AllOf(HasSubstr("drive.yaml:3"), HasSubstr("float32_epoch_s: has no effect here")));
+  EXPECT_THAT(error_of("faults: {lidar: {packet_columns: 8}}"), HasSubstr("packet_columns: has no effect here"));
+  EXPECT_THAT(error_of("faults: {lidar: {point_time_missing: true, point_time_reversed: true}}"),
+              HasSubstr("point_time_missing: stands beside"));
+  EXPECT_EQ(error_of("faults: {lidar: {packet_columns: 8, lost_packets: 0.1}}"), "no error");
+  EXPECT_EQ(error_of("faults: {lidar: {float32_epoch_s: 100, point_time_float32: true}}"), "no error");
+}
+
 TEST(FaultOptions, PointTimesMustFitTheRecording) {
   EXPECT_EQ(error_of("faults: {lidar: {point_time_scale: 10}}"), "no error");
   EXPECT_THAT(error_of("faults:\n  lidar: {point_time_scale: 50}\n"),

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -125,7 +126,9 @@ TEST_F(Simulate, GivesTheSameRecordingAndTruthAtAnyNumberOfThreadsWithEverything
       }
       if (points.kind[i] == truth::ReturnKind::noise) {
         EXPECT_EQ(points.label[i], scenes::Label::none);
+        EXPECT_EQ(std::hypot(points.normal_x[i], points.normal_y[i], points.normal_z[i]), 0);
       }
+      EXPECT_EQ(std::isnan(points.cos_incidence[i]), points.kind[i] == truth::ReturnKind::noise);
     }
   }
   for (const auto kind : {truth::ReturnKind::self, truth::ReturnKind::noise, truth::ReturnKind::transmitted,
@@ -284,6 +287,46 @@ TEST(Rig, MistakesInBeamsAndBodiesAreNamed) {
       "range_step_m: 0.01, range_10_percent_m: 50, range_80_percent_m: 90, threshold_snr: 5, sigma_from_m: [0], "
       "sigma_m: [0.01], elevation_deg: [0], azimuth_offset_cw_deg: [0]}\n");
   EXPECT_NE(width.find("divergence_mrad"), std::string::npos) << width;
+}
+
+// What is read and then ignored would be believed in: each of these is an error at its own line.
+TEST(Rig, OptionsWithoutEffectAreRefused) {
+  const auto refused = [](const std::string& lidar, const std::string& option) {
+    const std::string error = complaint_about("lidar:\n" + lidar);
+    EXPECT_NE(error.find(option + ": has no effect here"), std::string::npos) << lidar << error;
+    EXPECT_NE(error.find("test.yaml:" + std::to_string(1 + std::count(lidar.begin(), lidar.end(), '\n'))),
+              std::string::npos)
+        << error;
+  };
+  const std::string prism = "  model: livox-mid-40\n";
+  refused(prism + "  beam: {halo: true}\n", "halo");
+  refused(prism + "  beam: {rays: 7, footprint: adaptive}\n", "footprint");
+  refused("  beam: {footprint: full}\n", "footprint");
+  for (const char* returns : {"first", "last", "dual"})
+    refused("  beam: {returns: " + std::string(returns) + "}\n", "returns");
+  refused("  beam: {pulse_length_ns: 8}\n", "pulse_length_ns");
+  refused("  beam: {false_alarms_per_shot: 0.001, pulse_length_ns: 8}\n", "pulse_length_ns");
+  refused("  beam: {rays: 7, ghosts: false}\n", "ghosts");
+  refused("  beam: {rays: 7, pane_flatness_deg: 0.1}\n", "pane_flatness_deg");
+  refused("  beam: {saturation_signal: 30}\n", "saturation_signal");
+  refused("  beam: {saturation_bias_m: 0.1}\n", "saturation_bias_m");
+  refused("  beam: {rays: 7, spot_smear: 0.2}\n", "spot_smear");
+  refused("  noise: {range_scale: 0}\n  beam: {rays: 7, range_noise: snr}\n", "range_noise");
+  refused("  spin: {correlation_s: 2}\n", "correlation_s");
+  EXPECT_NE(complaint_about("imu: {low_pass_hz: 80}\n").find("low_pass_hz: has no effect here"), std::string::npos);
+}
+
+TEST(Rig, OptionsWithAnEffectAreNot) {
+  for (const char* beam :
+       {"returns: dual, glass: true", "returns: dual, halo: true", "returns: dual, false_alarms_per_shot: 0.01",
+        "rays: 3, returns: last, footprint: full, pulse_length_ns: 9", "glass: true, pulse_length_ns: 9, ghosts: false",
+        "saturation: true, saturation_signal: 30", "rays: 3, range_noise: snr, spot_smear: 0.2"})
+    EXPECT_EQ(complaint_about("lidar: {beam: {" + std::string(beam) + "}}\n"), "") << beam;
+  // Behind prisms every ray is traced, and what is resolved says so.
+  const std::string rig =
+      resolve_rig(ConfigNode::parse("lidar: {model: livox-mid-40, beam: {rays: 3}}\n", "test.yaml"));
+  EXPECT_NE(rig.find("footprint: full"), std::string::npos) << rig;
+  EXPECT_EQ(complaint_about(rig), "");
 }
 
 TEST(Rig, ResolvedBlockReadsBackAsItself) {

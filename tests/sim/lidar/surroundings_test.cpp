@@ -134,6 +134,33 @@ TEST(OwnBody, UnknownKindsAndSensorsInsideAreRefused) {
   EXPECT_NO_THROW(check_body(node, options, tests::pose({0, 0, 2})));
 }
 
+TEST(OwnBody, ASensorInsideASolidPartOfEquipmentIsRefusedWithTheBodysLine) {
+  const core::ConfigNode node = core::ConfigNode::parse("body:\n  kind: ground-power-unit\n", "rig.yaml").child("body");
+  BodyOptions options;
+  node.read(options);
+  try {
+    check_body(node, options, tests::pose({0.6, 0, 1}));
+    FAIL();
+  } catch (const core::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("rig.yaml:1: body: "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("inside a solid part of ground-power-unit"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_NO_THROW(check_body(node, options, tests::pose({0.6, 0, 2.5})));
+}
+
+TEST(OwnBody, SizesBesideEquipmentAreRefused) {
+  const core::ConfigNode node =
+      core::ConfigNode::parse("body:\n  kind: baggage-tractor\n  width_m: 3\n", "rig.yaml").child("body");
+  try {
+    gives_size(node);
+    FAIL();
+  } catch (const core::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("rig.yaml:3: body.width_m: baggage-tractor"), std::string::npos)
+        << error.what();
+  }
+}
+
 /// Everything that there is, at once.
 Requests everything() {
   Requests requests = asking({});

@@ -165,6 +165,26 @@ TEST(PointLabels, EveryColumnComesBackBitForBit) {
   EXPECT_EQ(got.cos_incidence, labels.cos_incidence);
 }
 
+/// 24 bytes a point that no metric reads stay on the disk.
+TEST_F(TruthFolder, PointTruthIsReadOnRequestOnly) {
+  const PointLabels labels = labels_with_all_columns();
+  {
+    ChunkWriter writer(folder_ / "lidar0_labels.chunks");
+    writer.append(labels.begin, to_chunk(labels));
+    writer.finish();
+  }
+  const GroundTruth truth = load_ground_truth(folder_);
+  const PointLabels plain = truth.labels().at(0);
+  EXPECT_FALSE(plain.has_point_truth());
+  EXPECT_TRUE(plain.normal_x.empty() && plain.normal_y.empty() && plain.normal_z.empty());
+  EXPECT_TRUE(plain.cos_incidence.empty());
+  EXPECT_EQ(plain.kind, labels.kind);
+  EXPECT_EQ(plain.instance, labels.instance);
+  const PointLabels all = truth.labels(0, Columns::labels_and_point_truth).at(0);
+  EXPECT_EQ(all.true_range_m, labels.true_range_m);
+  EXPECT_EQ(all.cos_incidence, labels.cos_incidence);
+}
+
 TEST(PointLabels, FilesFromBeforeKindsExistedHoldSurfacesOnly) {
   ChunkData chunk;
   chunk.add(std::span<const std::uint8_t>(std::vector<std::uint8_t>{1, 10}));
