@@ -121,9 +121,10 @@ void Crew::hold(const AircraftType& type) {
     const double top = type.floor_z_m + door.sill_m - 0.05, skin = fuselage_half_width_m(type, door.x_m, top);
     const bool wide = is_wide(type), aft = door.x_m > type.length_m / 2;
     const double half = wide ? container_loader_half_m : belt_loader_half_m;
-    // A belt's rail, 0.95 m high, ends 0.45 m behind the tip; up there the fuselage is wider.
-    const double beside_rail = wide ? 0 : widest_half_m(type, door.x_m, 0.6, top, top + 0.95) + 0.1 - 0.45;
-    const double x = std::max(skin + 0.35, beside_rail) + half;
+    // Rails end behind the tip; up there, and along the loader's width, the fuselage may be wider.
+    const double beside_rail = wide ? widest_half_m(type, door.x_m, 2, top, top + 1.15) - 0.75
+                                    : widest_half_m(type, door.x_m, 0.6, top, top + 0.95) - 0.45;
+    const double x = std::max(skin + 0.35, beside_rail + 0.1) + half;
     loader_tail_m_ = std::max(loader_tail_m_, x + half);
     if (!comes(0.8)) continue;
     const int top_cm = static_cast<int>(std::lround(100 * top));
@@ -188,17 +189,19 @@ void Crew::passengers(const AircraftType& type) {
   const Door& door = type.doors.front();
   const double half = widest_half_m(type);
   constexpr double lowest_sill_m = 1.8;  // lower doors have steps of their own
-  const double sill_m = type.floor_z_m + door.sill_m, stairs_sill_m = std::max(sill_m, lowest_sill_m);
+  const double sill_m = type.floor_z_m + door.sill_m, stairs_sill_m = std::max(sill_m - 0.07, lowest_sill_m);
   // The platform's edge is straight and the nose tapers: it ends at the skin where that is widest. Above it the skin
-  // bulges out further, and the rails end before it.
-  constexpr double clear_m = 0.06, half_width_m = 0.95, rail_m = 1.05;
+  // bulges out further and the door's leaf hangs ahead of it: the rails end before both, the leaf swings over the
+  // floor.
+  constexpr double clear_m = 0.06, half_width_m = 0.95, rail_m = 1.05, leaf_m = 0.3;
   const double skin = widest_half_m(type, door.x_m, half_width_m, sill_m - 0.1, sill_m + 0.03);
   const double beside_rail = widest_half_m(type, door.x_m, half_width_m, sill_m, sill_m + rail_m);
   const double stairs_x = -(skin + clear_m + passenger_stairs_front_m(stairs_sill_m));
   if (sill_m > lowest_sill_m) {
     put(
         "passenger_stairs_" + std::to_string(std::lround(100 * sill_m)), ground_equipment,
-        [&](MeshBuilder& b) { add_passenger_stairs(b, sill_m, beside_rail - skin); }, stairs_x, -door.x_m, 0);
+        [&](MeshBuilder& b) { add_passenger_stairs(b, stairs_sill_m, beside_rail + leaf_m - skin); }, stairs_x,
+        -door.x_m, 0);
   }
   const double bus_x = -(half + 13.5);
   const bool bus = comes(0.8);
@@ -213,7 +216,7 @@ void Crew::passengers(const AircraftType& type) {
     const double aside = jitter(), turn = jitter();
     props_.stand_mesh(
         walks ? "person_walking" : "person_standing", person, [&] { return make_person(posture); }, t_.frame,
-        foot_x - 0.6 - share * (way - 0.6), -door.x_m + 0.9 * aside, pi * (1 + 0.2 * turn));
+        foot_x - 0.6 - share * (way - 0.6), -door.x_m + (walks ? -1 : 1) * (0.6 + 0.3 * aside), pi * (1 + 0.2 * turn));
   }
   if (!comes(0.6)) return;
   const bool wide = is_wide(type);
