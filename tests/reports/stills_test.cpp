@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/error.h"
 #include "tests/reports/example.h"
 
 namespace tarmac::reports {

@@ -59,7 +59,7 @@ std::vector<Solid> solids_of(const Scene& scene) {
 bool is_built_in(const Solid& s) {
   return s.instance->label == Label::building || s.instance->label == Label::glass ||
          s.instance->label == Label::light || s.instance->label == Label::jet_bridge || s.name == "walkways" ||
-         s.name == "trays_and_pipes" || s.name == "docks";
+         s.name == "trays_and_pipes" || s.name == "docks" || s.name == "wall_features";
 }
 bool is_coupled(const Solid& s) {
   return s.name == "baggage_cart" || s.name == "baggage_tractor" || s.name == "tug" || s.name.starts_with("dolly");
