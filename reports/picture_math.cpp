@@ -1,7 +1,11 @@
 // The part of the pictures that is arithmetic: rectangles, scales, colours.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
+#include "core/error.h"
 #include "reports/stills.h"
 
 namespace tarmac::reports {
@@ -33,6 +37,32 @@ double quantile(std::vector<double>& values, double share) {
 }
 
 }  // namespace
+
+Eigen::Vector3d point_from(const std::string& option, const std::string& text) {
+  Eigen::Vector3d point;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int k = 0; k < 3; ++k) {
+    const auto [rest, error] = std::from_chars(at, end, point[k]);
+    const bool ends_well = k < 2 ? rest != end && *rest == ',' : rest == end;
+    if (error != std::errc{} || !ends_well || !std::isfinite(point[k])) {
+      throw core::InputError(
+          fmt::format("{} {}: expected three numbers in metres with commas and no blanks between, such as 12,-30,1.7",
+                      option, text));
+    }
+    at = k < 2 ? rest + 1 : rest;
+  }
+  return point;
+}
+
+void check(const EyeView& view) {
+  if (!((view.look_at_m - view.eye_m).norm() >= 1e-3))
+    throw core::InputError("--eye and --look-at are the same place: move one of them by a millimetre or more");
+  if (view.eye_m.cwiseAbs().maxCoeff() > 1e5 || view.look_at_m.cwiseAbs().maxCoeff() > 1e5)
+    throw core::InputError("--eye, --look-at: more than 100 km away from the origin, where no scene reaches");
+  if (!(view.height_deg > 0 && view.height_deg < 180))
+    throw core::InputError(fmt::format("height_deg {}: expected an angle between 0 and 180", view.height_deg));
+}
 
 TopView top_view(const Eigen::Vector2d& min_m, const Eigen::Vector2d& max_m, int width_px) {
   const double m_per_px = (max_m.x() - min_m.x()) / width_px;

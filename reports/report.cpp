@@ -14,8 +14,9 @@ void write_report(const std::filesystem::path& html_file, const ReportInput& inp
 }
 
 void render_scene(const std::filesystem::path& file, const scenes::Scene& scene, core::Time t, int width_px,
-                  int height_px) {
-  write_picture(file, Stills(scene, t).overview(width_px, height_px));
+                  int height_px, const std::optional<EyeView>& from) {
+  Stills stills(scene, t);
+  write_picture(file, from ? stills.seen_from(*from, width_px, height_px) : stills.overview(width_px, height_px));
 }
 
 }  // namespace tarmac::reports

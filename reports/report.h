@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
 #include "metrics/evaluation.h"
+#include "reports/stills.h"
 #include "scenes/scene.h"
 
 namespace tarmac::reports {
@@ -30,8 +32,9 @@ struct ReportInput {
 /// Renders figures and stills and writes the page, whole or not at all.
 void write_report(const std::filesystem::path& html_file, const ReportInput& input, const core::Progress& progress);
 
-/// A still of a scene as PNG or JPEG, by the extension (`tarmac describe scene NAME -o picture.png`).
+/// A still of a scene as PNG or JPEG, by the extension (`tarmac describe scene NAME -o picture.png`): the bird's view,
+/// or what an eye sees.
 void render_scene(const std::filesystem::path& file, const scenes::Scene& scene, core::Time t, int width_px,
-                  int height_px);
+                  int height_px, const std::optional<EyeView>& from = {});
 
 }  // namespace tarmac::reports

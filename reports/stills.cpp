@@ -44,6 +44,13 @@ Image Stills::view(const std::vector<Eigen::Vector3d>& points, const Eigen::Vect
   return state_->draw(renderer, width_px, height_px);
 }
 
+Image Stills::seen_from(const EyeView& view, int width_px, int height_px) {
+  check(view);
+  const vtkSmartPointer<vtkRenderer> renderer = state_->new_renderer(/*night=*/false, /*with_ceilings=*/true);
+  look_from_eye(renderer, view, state_->distance_m(view.eye_m));
+  return state_->draw(renderer, width_px, height_px);
+}
+
 Image Stills::silhouette(const FlatView& view) {
   const vtkSmartPointer<vtkRenderer> renderer = state_->new_silhouette_renderer();
   look_flat(renderer, view);

@@ -40,6 +40,17 @@ struct FlatView {
   int width_px = 0, height_px = 0;
 };
 
+/// What someone standing there sees. The picture's upper edge is up; looking straight down or up, it is +y.
+struct EyeView {
+  Eigen::Vector3d eye_m, look_at_m;  ///< world; at least 1 mm apart
+  double height_deg = 50;            ///< angle from the picture's lower to its upper edge
+};
+/// Throws core::InputError where `text` is not three finite numbers with commas between ("12,-30,1.7"); `option` names
+/// it in the message.
+Eigen::Vector3d point_from(const std::string& option, const std::string& text);
+/// Throws core::InputError where nothing can be seen that way.
+void check(const EyeView& view);
+
 /// Logarithmic colour scale of errors: below `low_m` the first colour, above `high_m` the last.
 struct ErrorScale {
   double low_m = 0.01, high_m = 1;
@@ -68,6 +79,8 @@ class Stills {
   /// As near as `points` (world) allow, with a little room around them, from `direction` (unit vector from the scene to
   /// the eye).
   Image view(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& direction, int width_px, int height_px);
+  /// Ceilings are drawn here (the views from above leave them out). Throws core::InputError as `check` does.
+  Image seen_from(const EyeView& view, int width_px, int height_px);
   /// Outlines: everything but the ground in one dark colour on white.
   Image silhouette(const FlatView& view);
   /// The scene dimmed, with the static points of a map over it coloured by their error. Same camera as `overview`.

@@ -67,6 +67,21 @@ void look_as_bird(vtkRenderer* renderer, const Eigen::Vector3d& center, const Ei
   look_at_corners(renderer, center, corners, kBirdDirection, aspect);
 }
 
+void look_from_eye(vtkRenderer* renderer, const EyeView& view, double nearest_m) {
+  const Eigen::Vector3d forward = view.look_at_m - view.eye_m;
+  const bool upright = forward.head<2>().norm() > 1e-3 * forward.norm();
+  vtkCamera* const camera = renderer->GetActiveCamera();
+  camera->ParallelProjectionOff();
+  camera->SetViewAngle(view.height_deg);
+  camera->SetFocalPoint(view.look_at_m.x(), view.look_at_m.y(), view.look_at_m.z());
+  camera->SetPosition(view.eye_m.x(), view.eye_m.y(), view.eye_m.z());
+  camera->SetViewUp(0, upright ? 0 : 1, upright ? 1 : 0);
+  // The nearer the near plane, the less depth is left to tell paint from the slab 2 mm below it; what is nearest may
+  // stand in a corner of the picture, where it is nearer to the plane than to the eye.
+  constexpr double corner_share = 0.4;
+  camera->SetClippingRange(std::max(0.005, corner_share * nearest_m), view.eye_m.norm() + 2 * kGroundRadius_m);
+}
+
 void look_flat(vtkRenderer* renderer, const FlatView& view) {
   constexpr double distance_m = 500;
   vtkCamera* const camera = renderer->GetActiveCamera();

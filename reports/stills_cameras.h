@@ -20,6 +20,9 @@ void look_at_corners(vtkRenderer* renderer, const Eigen::Vector3d& center, const
 /// the foreground, and without its outermost sides.
 void look_as_bird(vtkRenderer* renderer, const Eigen::Vector3d& center, const Eigen::Vector2d& half_m, double aspect);
 
+/// `nearest_m`: from the eye to the nearest thing.
+void look_from_eye(vtkRenderer* renderer, const EyeView& view, double nearest_m);
+
 /// Without perspective, along `direction`; `m_per_px` is the same for all pictures that are to be compared.
 void look_flat(vtkRenderer* renderer, const FlatView& view);
 

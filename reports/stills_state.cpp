@@ -55,6 +55,19 @@ vtkStandardNewMacro(QuietAboutGlew)
   static_cast<void>(done);
 }
 
+double distance_to_triangle_m(const Eigen::Vector3d& p, const Eigen::Vector3d (&corners)[3]) {
+  const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  bool above = normal.squaredNorm() > 0;
+  double nearest2 = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d &from = corners[k], edge = corners[(k + 1) % 3] - from;
+    above = above && normal.cross(edge).dot(p - from) >= 0;
+    const double share = std::clamp(edge.dot(p - from) / std::max(edge.squaredNorm(), 1e-12), 0.0, 1.0);
+    nearest2 = std::min(nearest2, (from + share * edge - p).squaredNorm());
+  }
+  return above ? std::abs(normal.normalized().dot(p - corners[0])) : std::sqrt(nearest2);
+}
+
 }  // namespace
 
 Stills::State::State(const scenes::Scene& scene_in, const std::string& egl_library) : scene(scene_in), gl(egl_library) {
@@ -210,7 +223,21 @@ double Stills::State::lowest_z_m() const {
   return std::isfinite(lowest_m) ? lowest_m : 0;
 }
 
-vtkSmartPointer<vtkRenderer> Stills::State::new_renderer(bool night) const {
+double Stills::State::distance_m(const Eigen::Vector3d& p_world) const {
+  double nearest_m = 1e3;
+  for (const scenes::Instance& instance : scene.instances) {
+    const scenes::Mesh& mesh = scene.meshes.at(instance.mesh);
+    const Eigen::Vector3d p = T_world_mesh(instance).inverse() * p_world;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Eigen::Vector3d corners[3] = {mesh.vertices[a].cast<double>(), mesh.vertices[b].cast<double>(),
+                                          mesh.vertices[c].cast<double>()};
+      nearest_m = std::min(nearest_m, distance_to_triangle_m(p, corners));
+    }
+  }
+  return nearest_m;
+}
+
+vtkSmartPointer<vtkRenderer> Stills::State::new_renderer(bool night, bool with_ceilings) const {
   vtkNew<vtkRenderer> renderer;
   const Rgb low = night ? kNight : kSkyHorizon, high = night ? kNight : kSkyTop;
   renderer->SetBackground(low.x(), low.y(), low.z());
@@ -225,7 +252,7 @@ vtkSmartPointer<vtkRenderer> Stills::State::new_renderer(bool night) const {
   ground->GetProperty()->LightingOff();
   renderer->AddActor(ground);
   for (std::size_t i = 0; i < actors.size(); ++i) {
-    if (!is_shown(scene.instances[i])) continue;
+    if (!with_ceilings && !is_shown(scene.instances[i])) continue;
     actors[i]->GetMapper()->SelectColorArray(night ? "night" : "day");
     renderer->AddActor(actors[i]);
   }

@@ -25,7 +25,7 @@ struct Stills::State {
   void connect(vtkGenericOpenGLRenderWindow* target);
   void build();
   static bool is_ground(const scenes::Instance& instance);
-  /// A ceiling keeps rays in; in pictures it would hide the room.
+  /// A ceiling keeps rays in; in pictures from above it would hide the room.
   bool is_shown(const scenes::Instance& instance) const;
   vtkSmartPointer<vtkActor> instance_actor(const scenes::Instance& instance);
   /// Texture coordinates by the place in the world, so that one picture of shadows serves every slab.
@@ -37,7 +37,9 @@ struct Stills::State {
   /// 1 where something stands between the ground and `to_light`.
   GroundLight cast_shadows(const Eigen::Vector3d& to_light);
   double lowest_z_m() const;
-  vtkSmartPointer<vtkRenderer> new_renderer(bool night) const;
+  /// To the nearest triangle.
+  double distance_m(const Eigen::Vector3d& p_world) const;
+  vtkSmartPointer<vtkRenderer> new_renderer(bool night, bool with_ceilings = false) const;
   vtkSmartPointer<vtkRenderer> new_silhouette_renderer() const;
   static void add_light(vtkRenderer* renderer, const Eigen::Vector3d& from, const Rgb& color, double intensity);
   Eigen::Vector2d half_m() const { return 0.5 * (scene.interest_max - scene.interest_min); }

@@ -245,8 +245,12 @@ void add_tail(MeshBuilder& b, const AircraftType& type) {
   constexpr int n = 12;
   for (int k = -2; k <= n; ++k) {  // from inside the fuselage
     const double s = static_cast<double>(k) / n, h = s * fin.height_m;
-    stations.push_back({Vector3d(-(fin.le_x_m + h * slope), 0, fin.root_z_m + h),
-                        fin.root_chord_m + s * (fin.tip_chord_m - fin.root_chord_m), fin.thickness, Vector3d::UnitY()});
+    const double chord = fin.root_chord_m + s * (fin.tip_chord_m - fin.root_chord_m);
+    // Where the tail cone is thin, what begins deeper would come out below it.
+    const double trailing_x = fin.le_x_m + h * slope + chord;
+    if (k < 0 && fin.root_z_m + h < fuselage_section(type, trailing_x).bottom_m) continue;
+    stations.push_back(
+        {Vector3d(-(fin.le_x_m + h * slope), 0, fin.root_z_m + h), chord, fin.thickness, Vector3d::UnitY()});
   }
   loft_surface(b, stations, 0, MaterialId::aircraft_blue_topcoat, MaterialId::aircraft_blue_topcoat);
   if (fin.dorsal_length_m > 0) add_dorsal_fin(b, fin, slope);

@@ -60,6 +60,19 @@ double widest_half_m(const AircraftType& type) {
   return half;
 }
 
+/// Of the fuselage beside `reach_m` either side of station `x_m`, between two heights.
+double widest_half_m(const AircraftType& type, double x_m, double reach_m, double low_z_m, double high_z_m) {
+  constexpr int steps = 8;
+  double half = 0;
+  for (int i = 0; i <= steps; ++i) {
+    for (int j = 0; j <= steps; ++j) {
+      half = std::max(half, fuselage_half_width_m(type, x_m + reach_m * (2.0 * i / steps - 1),
+                                                  low_z_m + (high_z_m - low_z_m) * j / steps));
+    }
+  }
+  return half;
+}
+
 double leading_edge_m(const AircraftType& type, double y_m) {
   return type.wing.root_le_x_m + (y_m - type.wing.root_y_m) * std::tan(type.wing.le_sweep_deg * pi / 180);
 }
@@ -92,7 +105,7 @@ void Crew::chocks_and_cones(const AircraftType& type) {
   const double tip = type.span_m / 2 + 0.6, tip_y = -leading_edge_m(type, type.wing.tip_y_m) - type.wing.tip_chord_m;
   for (const double side : {-1.0, 1.0}) {
     cone(side * tip, tip_y);
-    cone(side * 1.6, 2);
+    cone(side * (t_.remote ? 2.4 : 1.6), 2);  // beside the tractor
     for (const Engine& engine : type.engines) {
       const double y = -engine.lip_x_m + 1.5;
       if (side < 0 || !loader_comes_near(type, y)) cone(side * engine.y_m, y);
@@ -107,7 +120,11 @@ void Crew::hold(const AircraftType& type) {
     if (door.sill_m >= 0 || door.side != -1) continue;
     const double top = type.floor_z_m + door.sill_m - 0.05, skin = fuselage_half_width_m(type, door.x_m, top);
     const bool wide = is_wide(type), aft = door.x_m > type.length_m / 2;
-    const double half = wide ? container_loader_half_m : belt_loader_half_m, x = skin + 0.35 + half;
+    const double half = wide ? container_loader_half_m : belt_loader_half_m;
+    // Rails end behind the tip; up there, and along the loader's width, the fuselage may be wider.
+    const double beside_rail = wide ? widest_half_m(type, door.x_m, 2, top, top + 1.15) - 0.75
+                                    : widest_half_m(type, door.x_m, 0.6, top, top + 0.95) - 0.45;
+    const double x = std::max(skin + 0.35, beside_rail + 0.1) + half;
     loader_tail_m_ = std::max(loader_tail_m_, x + half);
     if (!comes(0.8)) continue;
     const int top_cm = static_cast<int>(std::lround(100 * top));
@@ -170,20 +187,28 @@ void Crew::nose(const AircraftType& type) {
 /// Stairs, a bus, people on the way between them, the pushback tractor with its bar.
 void Crew::passengers(const AircraftType& type) {
   const Door& door = type.doors.front();
-  const double skin = fuselage_half_width_m(type, door.x_m, type.floor_z_m), half = widest_half_m(type);
-  constexpr double foot_m = -3.6, lowest_sill_m = 1.8;  // lower doors have steps of their own
-  const double sill_m = type.floor_z_m + door.sill_m;
-  const double stairs_x = -(skin + 0.15 + passenger_stairs_front_m(std::max(sill_m, lowest_sill_m)));
+  const double half = widest_half_m(type);
+  constexpr double lowest_sill_m = 1.8;  // lower doors have steps of their own
+  const double sill_m = type.floor_z_m + door.sill_m, stairs_sill_m = std::max(sill_m - 0.07, lowest_sill_m);
+  // The platform's edge is straight and the nose tapers: it ends at the skin where that is widest. Above it the skin
+  // bulges out further and the door's leaf hangs ahead of it: the rails end before both, the leaf swings over the
+  // floor.
+  constexpr double clear_m = 0.06, half_width_m = 0.95, rail_m = 1.05, leaf_m = 0.3;
+  const double skin = widest_half_m(type, door.x_m, half_width_m, sill_m - 0.1, sill_m + 0.03);
+  const double beside_rail = widest_half_m(type, door.x_m, half_width_m, sill_m, sill_m + rail_m);
+  const double stairs_x = -(skin + clear_m + passenger_stairs_front_m(stairs_sill_m));
   if (sill_m > lowest_sill_m) {
     put(
         "passenger_stairs_" + std::to_string(std::lround(100 * sill_m)), ground_equipment,
-        [&](MeshBuilder& b) { add_passenger_stairs(b, sill_m); }, stairs_x, -door.x_m, 0);
+        [&](MeshBuilder& b) { add_passenger_stairs(b, stairs_sill_m, beside_rail + leaf_m - skin); }, stairs_x,
+        -door.x_m, 0);
   }
   const double bus_x = -(half + 13.5);
   const bool bus = comes(0.8);
   if (bus) put("apron_bus", vehicle, add_apron_bus, bus_x, std::min(-4.0, -door.x_m), quarter);
   const int people = static_cast<int>(std::lround(4 * std::min(t_.density, 2.0)));
-  const double foot_x = stairs_x + foot_m, way = foot_x - (bus ? bus_x + 2.2 : foot_x - 5);
+  const double foot_x = stairs_x + passenger_stairs_back_m(stairs_sill_m),
+               way = foot_x - (bus ? bus_x + 2.2 : foot_x - 5);
   for (int k = 0; k < people; ++k) {
     const double share = (k + 0.5 + 0.3 * jitter()) / people;
     const bool walks = k % 2 == 1;
@@ -191,7 +216,7 @@ void Crew::passengers(const AircraftType& type) {
     const double aside = jitter(), turn = jitter();
     props_.stand_mesh(
         walks ? "person_walking" : "person_standing", person, [&] { return make_person(posture); }, t_.frame,
-        foot_x - 0.6 - share * (way - 0.6), -door.x_m + 0.9 * aside, pi * (1 + 0.2 * turn));
+        foot_x - 0.6 - share * (way - 0.6), -door.x_m + (walks ? -1 : 1) * (0.6 + 0.3 * aside), pi * (1 + 0.2 * turn));
   }
   if (!comes(0.6)) return;
   const bool wide = is_wide(type);

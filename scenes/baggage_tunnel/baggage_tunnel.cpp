@@ -94,7 +94,8 @@ void add_doors(Assembly& a, const Site& s) {
     const Vector2d p = l.side.at(l.side.length_m()).p_m;
     a.found(side, Label::building, p.x(), p.y(), 0);
   }
-  const std::uint32_t door = a.mesh("wall_door", [](MeshBuilder& b) { add_roller_door(b, 3, 2.4); });
+  const std::uint32_t door =
+      a.mesh("wall_door", [](MeshBuilder& b) { add_roller_door(b, 3, 2.2); });  // below the trays
   const double length = l.line.length_m();
   for (const auto& [at, side] : {std::pair{l.first_leg_m - 8, 1.0},
                                  {l.first_leg_m - 4, -1.0},

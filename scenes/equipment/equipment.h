@@ -34,8 +34,10 @@ void add_ground_power_unit(MeshBuilder& b);             ///< 3.2 x 1.9 x 2.0
 void add_container_dolly(MeshBuilder& b, bool loaded);  ///< 3.2 x 1.9 x 0.51, with an LD3 container when loaded
 void add_catering_truck(MeshBuilder& b);                ///< 8.6 x 2.5 x 4.0
 /// Steps rise forward to a platform at `sill_m` whose front edge is passenger_stairs_front_m(sill_m) ahead.
-void add_passenger_stairs(MeshBuilder& b, double sill_m = 3.4);
+/// The rails end `rails_short_m` behind it.
+void add_passenger_stairs(MeshBuilder& b, double sill_m = 3.4, double rails_short_m = 0);
 double passenger_stairs_front_m(double sill_m);
+double passenger_stairs_back_m(double sill_m);         ///< their foot: behind the origin, so negative
 void add_refueller(MeshBuilder& b);                    ///< 10.0 x 2.5 x 3.3, tank of the 38 m3 class
 void add_hydrant_dispenser(MeshBuilder& b);            ///< 7.5 x 2.4 x 3.0
 void add_apron_bus(MeshBuilder& b);                    ///< 13.9 x 3.0 x 3.2, axles 7.1 apart

@@ -16,7 +16,7 @@ void add_refueller(MeshBuilder& b) {
   add_box(b, {-5.0, -1.15, 0.45}, {-4.85, 1.15, 0.65});  // rear underrun bar
   for (const double x : {-1.75, -3.10}) add_box(b, {x - 0.62, -1.22, 1.06}, {x + 0.62, 1.22, 1.10});
   b.use(gse_paint_white);
-  add_truck_cab(b, 2.95, 5.0, 1.22, 0.55, 2.75);
+  add_truck_cab(b, 2.95, 5.0, 1.22, 0.55, 2.75, WheelArch{3.55, 0.52});
   b.use(gse_paint_white);
   add_tank(b, -4.95, 2.70, 1.25, 1.10, 3.10);
   b.use(gse_paint_blue);
@@ -40,7 +40,7 @@ void add_hydrant_dispenser(MeshBuilder& b) {
   b.use(gse_chassis);
   add_box(b, {-3.7, -0.45, 0.55}, {3.4, 0.45, 0.9});
   b.use(gse_paint_white);
-  add_truck_cab(b, 1.75, 3.75, 1.17, 0.5, 2.35);
+  add_truck_cab(b, 1.75, 3.75, 1.17, 0.5, 2.35, WheelArch{2.35, 0.45});
   b.use(gse_paint_yellow);
   add_box(b, {-3.75, -1.2, 0.9}, {1.6, 1.2, 1.05});
   b.use(galvanised_steel);  // filter vessel, hose reel, meter, pit coupler's pipe
@@ -111,7 +111,7 @@ void add_deicer(MeshBuilder& b) {
   b.use(gse_chassis);
   add_box(b, {-5.1, -0.45, 0.62}, {4.8, 0.45, 1.0});
   b.use(gse_paint_white);
-  add_truck_cab(b, 3.2, 5.25, 1.25, 0.55, 2.6);
+  add_truck_cab(b, 3.2, 5.25, 1.25, 0.55, 2.6, WheelArch{3.6, 0.52});
   b.use(gse_paint_white);  // fluid tank and heater house
   add_box(b, {-4.0, -1.3, 1.05}, {2.2, 1.3, 2.55});
   add_box(b, {2.2, -1.1, 1.05}, {3.05, 1.1, 2.3});
@@ -202,7 +202,7 @@ void add_lavatory_truck(MeshBuilder& b) {
   b.use(gse_chassis);
   add_box(b, {-3.3, -0.42, 0.52}, {3.2, 0.42, 0.85});
   b.use(gse_paint_white);
-  add_truck_cab(b, 1.55, 3.5, 1.08, 0.48, 2.3);
+  add_truck_cab(b, 1.55, 3.5, 1.08, 0.48, 2.3, WheelArch{2.1, 0.42});
   b.use(gse_paint_blue);
   add_tank(b, -1.6, 1.4, 1.1, 0.9, 2.1);
   b.use(gse_chassis);

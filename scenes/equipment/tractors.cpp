@@ -121,8 +121,9 @@ void add_container_loader(MeshBuilder& b, double platform_z_m) {
   }
   b.use(gse_paint_yellow);
   for (const double y : {-w + 0.03, 1.47}) {
-    add_beam(b, {1.4, y, z + 1.1}, {4.2, y, z + 1.1}, 0.05, 0.10);
-    for (const double x : {1.42, 2.8, 4.18}) add_beam(b, {x, y, z - 0.02}, {x, y, z + 1.08}, 0.05, 0.05);
+    // The rails end before the platform does: beside them the fuselage bulges out.
+    add_beam(b, {1.4, y, z + 1.1}, {3.5, y, z + 1.1}, 0.05, 0.10);
+    for (const double x : {1.42, 2.45, 3.48}) add_beam(b, {x, y, z - 0.02}, {x, y, z + 1.08}, 0.05, 0.05);
   }
   b.use(gse_paint_white);
   add_box(b, {2.2, 1.52, z + 0.3}, {2.7, w, z + 1.05});  // operator's console

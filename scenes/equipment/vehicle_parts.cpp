@@ -12,11 +12,19 @@ void add_axle(MeshBuilder& b, double x_m, double half_width_m, double radius_m, 
   for (const double side : {-1.0, 1.0}) add_road_wheel(b, x_m, side * (half_width_m - width_m / 2), radius_m, width_m);
 }
 
-void add_truck_cab(MeshBuilder& b, double x0_m, double x1_m, double half_width_m, double low_z_m, double high_z_m) {
+void add_truck_cab(MeshBuilder& b, double x0_m, double x1_m, double half_width_m, double low_z_m, double high_z_m,
+                   const std::optional<WheelArch>& arch) {
+  constexpr double room_m = 0.08;
   const double w = half_width_m, sill = low_z_m + 0.45 * (high_z_m - low_z_m), rake = 0.22;
+  const double body_z_m = arch ? 2 * arch->wheel_radius_m + room_m : low_z_m;
+  if (arch) {  // below the arch's top, before and behind it
+    const double front = arch->axle_x_m + arch->wheel_radius_m + room_m, rear = 2 * arch->axle_x_m - front;
+    add_box(b, {front, -w, low_z_m}, {x1_m, w, body_z_m});
+    if (rear > x0_m + 0.1) add_box(b, {x0_m, -w, low_z_m}, {rear, w, body_z_m});
+  }
   add_plate(b,
-            {{x0_m, low_z_m},
-             {x1_m, low_z_m},
+            {{x0_m, body_z_m},
+             {x1_m, body_z_m},
              {x1_m, sill},
              {x1_m - rake, high_z_m - 0.06},
              {x1_m - rake - 0.15, high_z_m},

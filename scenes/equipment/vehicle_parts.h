@@ -1,6 +1,8 @@
 /// Parts that several vehicles have.
 #pragma once
 
+#include <optional>
+
 #include "scenes/equipment/equipment.h"
 
 namespace tarmac::scenes {
@@ -9,8 +11,12 @@ namespace tarmac::scenes {
 void add_axle(MeshBuilder& b, double x_m, double half_width_m, double radius_m, double width_m);
 
 /// A cab over the front axle from `x0_m` forward to `x1_m`: body in the builder's material, with windscreen and side
-/// windows in dark glass just off the body, and mirrors.
-void add_truck_cab(MeshBuilder& b, double x0_m, double x1_m, double half_width_m, double low_z_m, double high_z_m);
+/// windows in dark glass just off the body, and mirrors. `arch` leaves room for a wheel: its axle's x and radius.
+struct WheelArch {
+  double axle_x_m = 0, wheel_radius_m = 0;
+};
+void add_truck_cab(MeshBuilder& b, double x0_m, double x1_m, double half_width_m, double low_z_m, double high_z_m,
+                   const std::optional<WheelArch>& arch = {});
 
 /// Posts and rails around a platform, 1.1 m high.
 void add_guard_rail(MeshBuilder& b, double x0_m, double x1_m, double half_width_m, double floor_z_m,

@@ -193,7 +193,11 @@ double passenger_stairs_front_m(double sill_m) {
   return -3.4 - stair_extension_m(sill_m) + stair_steps(sill_m) * step_run_m + stairs_platform_m;
 }
 
-void add_passenger_stairs(MeshBuilder& b, double sill_m) {
+double passenger_stairs_back_m(double sill_m) {
+  return -3.6 - stair_extension_m(sill_m);
+}
+
+void add_passenger_stairs(MeshBuilder& b, double sill_m, double rails_short_m) {
   const int steps = stair_steps(sill_m);
   const double longer = stair_extension_m(sill_m), from = -3.4 - longer, rise = sill_m / steps;
   for (const double y : {-0.95, 0.95}) {
@@ -207,14 +211,14 @@ void add_passenger_stairs(MeshBuilder& b, double sill_m) {
     add_box(b, {from + k * step_run_m, -0.7, 0.03 + k * rise + rise - 0.06},
             {from + k * step_run_m + 0.32, 0.7, 0.03 + (k + 1) * rise});
   }
-  const double top_x = from + steps * step_run_m;
+  const double top_x = from + steps * step_run_m, rail_end_x = top_x + stairs_platform_m - rails_short_m;
   add_box(b, {top_x, -0.9, sill_m - 0.1}, {top_x + stairs_platform_m, 0.9, sill_m + 0.03});
   b.use(gse_paint_white);
   for (const double y : {-0.78, 0.78}) {
     add_beam(b, {from, y, 0.25}, {top_x, y, sill_m - 0.05}, 0.08, 0.35);
     add_beam(b, {from, y, 1.25}, {top_x, y, sill_m + 1.0}, 0.06, 0.06);
-    add_beam(b, {top_x, y, sill_m + 1.0}, {top_x + stairs_platform_m, y, sill_m + 1.0}, 0.06, 0.06);
-    for (const double x : {from, from + 1.3, from + 2.6, top_x, top_x + 1.65}) {
+    add_beam(b, {top_x, y, sill_m + 1.0}, {rail_end_x, y, sill_m + 1.0}, 0.06, 0.06);
+    for (const double x : {from, from + 1.3, from + 2.6, top_x, rail_end_x - 0.05}) {
       const double z = std::min(0.25 + (x - from) * (sill_m - 0.3) / (top_x - from), sill_m);
       add_beam(b, {x, y, z}, {x, y, z + 1.0}, 0.05, 0.05);
     }

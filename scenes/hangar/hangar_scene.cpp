@@ -30,7 +30,7 @@ PavingSpec paving(const HangarOptions& options) {
 /// Cabinets and benches along both side walls and the back, in turn; fronts towards the middle.
 void add_cabinets(Props& props, const HangarOptions& options, const HangarLayout& l, std::uint64_t seed) {
   const core::RandomStream random(seed, "scenes/hangar/cabinets");
-  constexpr double pitch_m = 2.4, off_wall_m = 0.5, first_m = 6;
+  constexpr double pitch_m = 2.4, off_wall_m = 0.6, first_m = 6;
   struct Place {
     double x, y, yaw;
   };

@@ -49,7 +49,7 @@ void add_car(MeshBuilder& b, CarShape shape, MaterialId paint) {
   const CarSizes s = sizes_of(shape);
   const double h = s.length_m / 2, w = s.width_m / 2;
   for (const double x : {s.front_axle_m, s.rear_axle_m}) {
-    for (const double y : {-w + 0.12, w - 0.12}) add_road_wheel(b, x, y, s.wheel_m, 0.2);
+    for (const double y : {-w + 0.1, w - 0.1}) add_road_wheel(b, x, y, s.wheel_m, 0.2);
   }
   b.use(gse_chassis);
   add_box(b, {-h + 0.15, -w + 0.28, 0.17}, {h - 0.15, w - 0.28, 0.35});
@@ -62,8 +62,8 @@ void add_car(MeshBuilder& b, CarShape shape, MaterialId paint) {
              {s.cabin[1].x(), s.belt_m},
              {-h + 0.15, s.belt_m},
              {-h, 0.6}},
-            -w + 0.02, w - 0.02);
-  b.use(car_paint_dark);  // glass and what is behind it: dark, since little comes back from inside a car
+            -w + 0.05, w - 0.05);  // hubs stand 2 cm proud of it
+  b.use(car_paint_dark);           // glass and what is behind it: dark, since little comes back from inside a car
   add_cabin(b, s.cabin, w - 0.06, w - 0.22);
   b.use(paint);
   const double roof = s.cabin[2].y();

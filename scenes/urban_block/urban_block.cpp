@@ -171,7 +171,7 @@ class KerbSide {
     }
     for (int k = 0; k < 4; ++k) {
       trees_.push_back(a.mesh("tree", [&](MeshBuilder& b) {
-        add_tree(b, {.height_m = 6.5 + 0.9 * k, .crown_radius_m = 1.7 + 0.2 * k, .leaves = 420, .leaf_m = 0.3}, seed,
+        add_tree(b, {.height_m = 6.5 + 0.9 * k, .crown_radius_m = 1.5 + 0.15 * k, .leaves = 420, .leaf_m = 0.3}, seed,
                  k);
       }));
     }

@@ -102,11 +102,12 @@ void add_columns(Assembly& a, const WarehouseOptions& o) {
   const std::uint32_t column = a.mesh("column", [&](MeshBuilder& b) {
     const double top = l::roof_m(o) - 1.0;
     b.use(painted_steel);
-    add_box(b, {-0.15, -0.15, kFoot_m}, {0.15, -0.13, top});
-    add_box(b, {-0.15, 0.13, kFoot_m}, {0.15, 0.15, top});
-    add_box(b, {-0.01, -0.13, kFoot_m}, {0.01, 0.13, top});
+    constexpr double half_m = 0.08;  // pallets reach 9 cm into the flue at most
+    add_box(b, {-0.15, -half_m, kFoot_m}, {0.15, -half_m + 0.02, top});
+    add_box(b, {-0.15, half_m - 0.02, kFoot_m}, {0.15, half_m, top});
+    add_box(b, {-0.01, -half_m + 0.02, kFoot_m}, {0.01, half_m - 0.02, top});
     b.use(concrete_wall);
-    add_box(b, {-0.16, -0.16, kFoot_m}, {0.16, 0.16, 0.3});
+    add_box(b, {-0.16, -half_m - 0.01, kFoot_m}, {0.16, half_m + 0.01, 0.1});
   });
   for (int row = 0; row <= o.aisles; ++row) {
     const double y = l::aisle_y_m(o, 0) + (row - 0.5) * l::pitch_m(o);

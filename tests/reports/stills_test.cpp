@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/error.h"
 #include "tests/reports/example.h"
 
 namespace tarmac::reports {
@@ -110,6 +111,46 @@ TEST_F(StillsOfTheExample, ThingsThrowShadowsAwayFromTheSun) {
   const double shadow = at_world(image, view_, example::kBlock + Eigen::Vector2d(1.2, 1.9)).sum();
   const double lit = at_world(image, view_, example::kBlock + Eigen::Vector2d(-3.5, -3.5)).sum();
   EXPECT_LT(shadow, 0.8 * lit);
+}
+
+TEST_F(StillsOfTheExample, AnEyeSeesWhatLiesThatWay) {
+  const Eigen::Vector3d block(example::kBlock.x(), example::kBlock.y(), 1.5);
+  const Image east = stills_->seen_from({block + Eigen::Vector3d(10, 0, 0), block}, 320, 180);
+  EXPECT_TRUE(is_red(pixel(east, 160, 90)));
+  // The block's front is 8 m away and 2 m wide: (1 m / 8 m) / tan 25 degrees of half the picture's height.
+  const int half_px = static_cast<int>(90 * (1.0 / 8) / std::tan(25 * M_PI / 180));
+  for (const int side : {-1, 1}) {
+    EXPECT_TRUE(is_red(pixel(east, 160 + side * (half_px - 2), 90)));
+    EXPECT_FALSE(is_red(pixel(east, 160 + side * (half_px + 2), 90)));
+  }
+  // Looking west from the block's east, north is to the right: the cart.
+  const Image both = stills_->seen_from({{20, 0, 3}, {0, 0, 0.5}}, 320, 180);
+  std::size_t red_left = 0, blue_right = 0, wrong = 0;
+  for (int y = 0; y < 180; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      const Eigen::Vector3d c = pixel(both, x, y);
+      (x < 160 ? red_left : wrong) += is_red(c);
+      (x > 160 ? blue_right : wrong) += is_blue(c);
+    }
+  }
+  EXPECT_GT(red_left, 20u);
+  EXPECT_GT(blue_right, 20u);
+  EXPECT_EQ(wrong, 0u);
+  const Image away =
+      stills_->seen_from({block + Eigen::Vector3d(10, 0, 0), block + Eigen::Vector3d(20, 0, 0)}, 320, 180);
+  EXPECT_FALSE(is_red(pixel(away, 160, 90)));
+  const Image down = stills_->seen_from({{8, -6, 20}, {8, -6, 0}}, 320, 180);
+  EXPECT_TRUE(is_red(pixel(down, 160, 90))) << "straight down is a direction, too";
+}
+
+TEST(EyeView, SaysWhatIsWrongWithAPlace) {
+  EXPECT_EQ(point_from("--eye", "12,-30.5,1e0"), Eigen::Vector3d(12, -30.5, 1));
+  for (const char* bad : {"", "1,2", "1,2,3,4", "1,2,x", "1;2;3", "1, 2, 3", "1,2,nan", "1,2,inf", "1,2,3 "}) {
+    EXPECT_THROW(point_from("--eye", bad), core::InputError) << bad;
+  }
+  EXPECT_THROW(check({{1, 2, 3}, {1, 2, 3}}), core::InputError);
+  EXPECT_THROW(check({{1, 2, 3e7}, {1, 2, 3}}), core::InputError);
+  EXPECT_NO_THROW(check({{1, 2, 3}, {1, 2, 3.01}}));
 }
 
 TEST_F(StillsOfTheExample, SamePictureTwiceIsTheSameBytes) {

@@ -225,6 +225,12 @@ TEST_F(Program, BadInputIsRefusedWithFileLineAndField) {
   expect_refused({"evaluate", "--truth", "short.yaml", "--estimate", "short.yaml"}, HasSubstr("short.yaml"));
   expect_refused({"describe", "sensor", "vlp-61"}, HasSubstr("vlp-16"));
   expect_refused({"describe", "aircraft", "b777-300e"}, HasSubstr("did you mean b777-300er?"));
+  expect_refused({"describe", "scene", "corridor", "-o", "c.png", "--eye", "1,2"}, HasSubstr("--look-at"));
+  expect_refused({"describe", "scene", "corridor", "-o", "c.png", "--eye", "1,2", "--look-at", "-1,0,1"},
+                 AllOf(HasSubstr("--eye 1,2"), HasSubstr("12,-30,1.7")));
+  expect_refused({"describe", "scene", "corridor", "--eye", "-1,2,3", "--look-at", "-1,0,1"}, HasSubstr("-o"));
+  expect_refused({"describe", "scene", "all", "-o", "c.png", "--eye", "-1,2,3", "--look-at", "-1,0,1"},
+                 HasSubstr("contact sheet"));
   expect_refused({"describe", "fault", "lida"}, HasSubstr("did you mean 'lidar'"));
   expect_refused({"fly"}, HasSubstr("fly"));
   expect_refused({"run"}, HasSubstr("scenario"));

@@ -139,10 +139,10 @@ std::string describe_scene(const std::string& name) {
   for (const auto* scene : scenes::scenes()) {
     if (name != scene->name) continue;
     const auto built = scenes::make_scene(core::ConfigNode::parse("kind: " + name + "\n", "describe scene " + name), 1);
-    return fmt::format("{}: {}\n{} triangles after instancing, {} materials, {} actors\n{}", scene->name,
-                       scene->summary, built.triangle_count(), built.materials.size(), built.actors.size(),
-                       options_text(scene->describe()) + "of every kind, " +
-                           options_text(scenes::describe_common_options()));
+    return fmt::format(
+        "{}: {}\n{} triangles after instancing, {} materials, {} actors\n{}", scene->name, scene->summary,
+        built.triangle_count(), built.materials.size(), built.actors.size(),
+        options_text(scene->describe()) + "of every kind, " + options_text(scenes::describe_common_options()));
   }
   unknown("scene", name, scene_entries());
 }
@@ -205,7 +205,8 @@ std::string describe_equipment(const std::string& name) {
 
 std::vector<Entry> motion_entries() {
   std::vector<Entry> entries;
-  for (const std::string& kind : sim::truth::motion_kinds()) entries.push_back({kind, sim::truth::motion_summary(kind)});
+  for (const std::string& kind : sim::truth::motion_kinds())
+    entries.push_back({kind, sim::truth::motion_summary(kind)});
   return entries;
 }
 
@@ -312,6 +313,7 @@ int list_command(const std::string& wanted, const CommonArguments& common) {
 }
 
 int describe_command(const DescribeArguments& arguments, const CommonArguments&) {
+  check_picture(arguments);
   for (const Kind& kind : kinds()) {
     if (arguments.kind != kind.singular && arguments.kind != kind.plural) continue;
     if (arguments.name == "all") {
@@ -319,7 +321,11 @@ int describe_command(const DescribeArguments& arguments, const CommonArguments&)
     } else {
       fmt::print("{}", kind.describe(arguments.name));
     }
-    if (!arguments.picture.empty()) draw_picture({kind.singular, arguments.name, arguments.picture});
+    if (!arguments.picture.empty()) {
+      DescribeArguments wanted = arguments;
+      wanted.kind = kind.singular;
+      draw_picture(wanted);
+    }
     return 0;
   }
   std::vector<Entry> known;

@@ -82,6 +82,7 @@ int compare_command(const CompareArguments& arguments, const CommonArguments& co
 int list_command(const std::string& kind, const CommonArguments& common);
 struct DescribeArguments {
   std::string kind, name, picture;
+  std::string eye, look_at;  ///< "x,y,z" [m]: where the picture is seen from; "" = the view of the kind
 };
 int describe_command(const DescribeArguments& arguments, const CommonArguments& common);
 

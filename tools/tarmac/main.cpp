@@ -227,6 +227,11 @@ void add_commands(CLI::App& app, Arguments& a) {
   describe->add_option("name", a.describe.name, "its name, or all")->required();
   describe->add_option("-o,--out", a.describe.picture,
                        "write a picture (scene, scenario, aircraft, equipment; of all: a contact sheet), .png or .jpg");
+  describe->add_option(
+      "--eye", a.describe.eye,
+      "x,y,z: see the picture from there, in metres of the scene's world (aircraft, equipment: front to "
+      "-x, floor at z = 0); needs --look-at");
+  describe->add_option("--look-at", a.describe.look_at, "x,y,z: the middle of what --eye sees");
 
   CLI::App* bench = add(app, a, "bench", "what simulating, estimating and scoring cost on this machine",
                         [&a] { return bench_command(a.bench, a.common); });

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <optional>
 
 #include "core/error.h"
 #include "reports/contact_sheet.h"
@@ -125,27 +126,49 @@ reports::Image sheet_of(const std::string& kind) {
   throw core::InputError("describe " + kind + " all -o: a contact sheet exists of scene, aircraft and equipment only");
 }
 
-reports::Image picture_of(const Showroom& room) {
+reports::Image picture_of(const Showroom& room, const std::optional<reports::EyeView>& from) {
+  if (from) {
+    return reports::Stills(room.scene, core::Time{}).seen_from(*from, kPictureWidth_px, kPictureHeight_px);
+  }
   return reports::exhibit_picture({&room.scene, room.points}, kPictureWidth_px, kPictureHeight_px);
+}
+
+std::optional<reports::EyeView> eye_of(const DescribeArguments& arguments) {
+  if (arguments.eye.empty() && arguments.look_at.empty()) return {};
+  if (arguments.eye.empty() || arguments.look_at.empty())
+    throw core::InputError("--eye and --look-at belong together: give both (x,y,z in metres) or neither");
+  if (arguments.name == "all")
+    throw core::InputError("--eye: a contact sheet has views of its own; name one thing instead of all");
+  const reports::EyeView view{reports::point_from("--eye", arguments.eye),
+                              reports::point_from("--look-at", arguments.look_at)};
+  reports::check(view);
+  return view;
 }
 
 }  // namespace
 
+void check_picture(const DescribeArguments& arguments) {
+  if (arguments.picture.empty() && !(arguments.eye.empty() && arguments.look_at.empty()))
+    throw core::InputError("--eye and --look-at say where a picture is seen from: add -o picture.png");
+  eye_of(arguments);
+}
+
 void draw_picture(const DescribeArguments& arguments) {
+  const std::optional<reports::EyeView> from = eye_of(arguments);
   if (arguments.name == "all") {
     reports::write_picture(arguments.picture, sheet_of(arguments.kind), kSheetQuality_percent);
   } else if (arguments.kind == "aircraft") {
-    reports::write_picture(arguments.picture, picture_of(show_aircraft(arguments.name)));
+    reports::write_picture(arguments.picture, picture_of(show_aircraft(arguments.name), from));
   } else if (arguments.kind == "equipment") {
-    reports::write_picture(arguments.picture, picture_of(show_equipment(arguments.name)));
+    reports::write_picture(arguments.picture, picture_of(show_equipment(arguments.name), from));
   } else if (arguments.kind == "scene") {
     reports::render_scene(arguments.picture, default_scene(arguments.name), core::Time{}, kPictureWidth_px,
-                          kPictureHeight_px);
+                          kPictureHeight_px, from);
   } else if (arguments.kind == "scenario") {
     const auto scenario = scenarios::load_scenario(scenarios::find_scenario(arguments.name, scenario_folders()), {});
     const scenes::Scene scene = scenes::make_scene(scenario.scene, static_cast<std::uint64_t>(scenario.seed));
     reports::render_scene(arguments.picture, scene, core::time_from_s(scenario.duration_s / 2), kPictureWidth_px,
-                          kPictureHeight_px);
+                          kPictureHeight_px, from);
   } else {
     throw core::InputError(
         fmt::format("describe {} -o: only scene, scenario, aircraft and equipment have a picture", arguments.kind));

@@ -5,6 +5,8 @@
 
 namespace tarmac::tools {
 
+/// Throws core::InputError where the arguments ask for no possible picture (cheap: nothing is built).
+void check_picture(const DescribeArguments& arguments);
 /// `arguments.kind` is singular; `name` may be "all" for scene, aircraft and equipment.
 void draw_picture(const DescribeArguments& arguments);
 
