@@ -58,22 +58,24 @@ Surfaces surfaces_of(const CentreField& f) {
           f.ny.data(),  f.nz.data(), f.facing.data(), f.instance.data(), f.material.data()};
 }
 
-/// Both on one plane of one material, or neither on anything.
-inline bool agree(const Surfaces& s, std::size_t i, std::size_t j) {
+/// Not both on one plane of one material, nor both on nothing.
+inline std::uint8_t differ(const Surfaces& s, std::size_t i, std::size_t j) {
   const float x = s.x[j] - s.x[i], y = s.y[j] - s.y[i], z = s.z[j] - s.z[i];
-  const float off_i = std::abs(s.nx[i] * x + s.ny[i] * y + s.nz[i] * z);
-  const float off_j = std::abs(s.nx[j] * x + s.ny[j] * y + s.nz[j] * z);
-  const float cosine = std::min(s.facing[i], s.facing[j]);
-  const float most = std::max(off_plane_m, off_plane_by_cosine_m * cosine);
+  const float i_to_j = s.nx[i] * x + s.ny[i] * y + s.nz[i] * z, j_to_i = s.nx[j] * x + s.ny[j] * y + s.nz[j] * z;
+  const float off_i = i_to_j < 0 ? -i_to_j : i_to_j, off_j = j_to_i < 0 ? -j_to_i : j_to_i;
+  const float cosine = s.facing[i] < s.facing[j] ? s.facing[i] : s.facing[j];
+  const float by_cosine = off_plane_by_cosine_m * cosine, most = by_cosine > off_plane_m ? by_cosine : off_plane_m;
   const float along = s.nx[i] * s.nx[j] + s.ny[i] * s.ny[j] + s.nz[i] * s.nz[j];
   const bool met_i = s.t_m[i] > 0, met_j = s.t_m[j] > 0;
   const bool plane = (s.instance[i] == s.instance[j]) & (s.material[i] == s.material[j]) & (along > parallel) &
                      (off_i < most) & (off_j < most) & (cosine > least_cosine);
-  return (met_i & met_j & plane) | (!met_i & !met_j);
+  return !((met_i & met_j & plane) | (!met_i & !met_j));
 }
 
-void agree_across(const Surfaces& s, std::size_t count, std::size_t channels, std::uint8_t* out) {
-  for (std::size_t i = 0; i < count; ++i) out[i] = agree(s, i, i + channels);
+TARMAC_VECTOR_LOOP void differ_across(std::size_t count, std::size_t channels, const Surfaces s,
+                                      std::uint8_t* __restrict out) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) out[i] = differ(s, i, i + channels);
 }
 
 }  // namespace
@@ -127,38 +129,42 @@ Echo EchoField::at(std::size_t i) const {
   return {t_m[i], signal[i], cos_incidence[i], nx[i], ny[i], nz[i], instance[i], kind[i]};
 }
 
-void Neighbours::set(std::size_t channels, const std::vector<std::int64_t>& above_cycles,
-                     const std::vector<std::int32_t>& above_channel) {
-  channels_ = channels;
-  above_cycles_ = above_cycles;
-  above_channel_ = above_channel;
+void Neighbours::set(const std::vector<Above>& above) {
+  above_ = above;
 }
 
-void Neighbours::settle(const CentreField& field, const std::vector<std::uint8_t>& unsettled_material,
-                        std::vector<std::uint8_t>& settled) const {
-  const std::size_t n = field.size();
-  const auto channels = static_cast<std::int64_t>(channels_), cycles = static_cast<std::int64_t>(n) / channels;
+void Neighbours::look(const CentreField& field, const std::vector<std::uint8_t>& open_material,
+                      std::vector<std::uint8_t>& open) const {
+  const std::size_t n = field.size(), channels = above_.size();
+  std::vector<std::uint8_t> across(n, 1);  // from each to the next cycle, which is on the right: heads turn clockwise
+  if (n > channels) differ_across(n - channels, channels, surfaces_of(field), across.data());
+  open.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const int on_left = i < channels ? 1 : across[i - channels];
+    open[i] = static_cast<std::uint8_t>(on_left * side::left + across[i] * side::right);
+  }
+  look_up(field, open);
+  for (std::size_t i = 0; i < n; ++i)
+    if (open_material[field.material[i]]) open[i] = side::all;
+}
+
+/// Cycle by cycle: what is looked at together lies together.
+void Neighbours::look_up(const CentreField& field, std::vector<std::uint8_t>& open) const {
   const Surfaces s = surfaces_of(field);
-  settled.assign(n, 0);
-  if (cycles < 3) return;
-  std::vector<std::uint8_t> across(n, 0);
-  agree_across(s, n - channels_, channels_, across.data());
-  // The first and the last cycle have no neighbour on one side.
-  for (std::size_t i = channels_; i + channels_ < n; ++i) settled[i] = across[i] & across[i - channels_];
-  // Cycle by cycle: what is looked at together lies together.
+  const auto channels = static_cast<std::int64_t>(above_.size()),
+             cycles = static_cast<std::int64_t>(field.size()) / channels;
   for (std::int64_t k = 0; k < cycles; ++k)
     for (std::int64_t c = 0; c < channels; ++c) {
-      const std::int32_t above = above_channel_[static_cast<std::size_t>(c)];
-      if (above < 0) continue;
-      const std::int64_t other = k + above_cycles_[static_cast<std::size_t>(c)];
+      const Above& above = above_[static_cast<std::size_t>(c)];
+      if (above.channel < 0) continue;
+      const std::int64_t other = k + above.cycles;
       const auto i = static_cast<std::size_t>(k * channels + c);
       const bool there = other >= 0 && other < cycles;
-      const auto j = static_cast<std::size_t>(there ? other * channels + above : 0);
-      if (there && (settled[i] | settled[j]) && agree(s, i, j)) continue;
-      settled[i] = 0;
-      if (there) settled[j] = 0;
+      const auto j = static_cast<std::size_t>(there ? other * channels + above.channel : 0);
+      if (there && !differ(s, i, j)) continue;
+      open[i] |= side::above;
+      if (there) open[j] |= side::below;
     }
-  for (std::size_t i = 0; i < n; ++i) settled[i] &= !unsettled_material[field.material[i]];
 }
 
 }  // namespace tarmac::sim::lidar

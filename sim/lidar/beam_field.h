@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/lidar/echo_train.h"
+#include "sim/lidar/footprint.h"
 #include "sim/raycast/tracer.h"
 
 namespace tarmac::sim::lidar {
@@ -43,22 +44,20 @@ struct EchoField {
   Echo at(std::size_t firing) const;
 };
 
-/// Whether a beam and its four neighbours lie on one plane, so that nothing can end inside its footprint that is wider
-/// than the way to the neighbours.
+/// Where a beam's surface may end or bend inside its footprint: towards neighbours that have met something else, or
+/// that lie off its plane. Towards the others nothing can end that is wider than the way to them.
 class Neighbours {
  public:
-  /// Offsets by channel: the next cycle's, and the beam above (none where there is none).
-  void set(std::size_t channels, const std::vector<std::int64_t>& above_cycles,
-           const std::vector<std::int32_t>& above_channel);
-  /// settled[i]: firing i and its neighbours met one plane, or all met nothing. Firings on a material that
-  /// `unsettled_material` marks, and those whose neighbours lie beyond the sweep, never are.
-  void settle(const CentreField& field, const std::vector<std::uint8_t>& unsettled_material,
-              std::vector<std::uint8_t>& settled) const;
+  /// `above` by channel.
+  void set(const std::vector<Above>& above);
+  /// open[i]: sides (bits of side::) on which firing i and its neighbour did not meet one plane, or both nothing. All
+  /// of them on a material that `open_material` marks, and those beyond the sweep.
+  void look(const CentreField& field, const std::vector<std::uint8_t>& open_material,
+            std::vector<std::uint8_t>& open) const;
 
  private:
-  std::size_t channels_ = 1;
-  std::vector<std::int64_t> above_cycles_;
-  std::vector<std::int32_t> above_channel_;
+  void look_up(const CentreField& field, std::vector<std::uint8_t>& open) const;
+  std::vector<Above> above_;
 };
 
 }  // namespace tarmac::sim::lidar

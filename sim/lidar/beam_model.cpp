@@ -91,6 +91,7 @@ BeamModel::BeamModel(const Profile& profile, const FiringTable& firing, const Ai
       body_(std::move(body)),
       scene_(std::move(scene)),
       range_offset_m_(firing.range_offset_m()),
+      channels_(firing.channels()),
       split_cycles_(std::max<std::size_t>(1, split_rays / (SweepTracer::tile * firing.channels())) *
                     SweepTracer::tile) {
   for (const scenes::Material& m : scene_->materials) {
@@ -99,14 +100,8 @@ BeamModel::BeamModel(const Profile& profile, const FiringTable& firing, const Ai
   }
   if (!firing.beams_change())
     for (std::size_t k = 0; k < footprint_.around(); ++k) outer_.push_back(footprint_.table(aim.beams(), k));
-  std::vector<std::int64_t> cycles;
-  std::vector<std::int32_t> channels;
-  if (adaptive_)
-    for (const Above& above : beams_above(firing, aim.beams())) {
-      cycles.push_back(above.cycles);
-      channels.push_back(above.channel);
-    }
-  neighbours_.set(firing.channels(), cycles, channels);
+  for (std::size_t k = 0; k < footprint_.around(); ++k) sides_.push_back(footprint_.sides(k));
+  if (adaptive_) neighbours_.set(beams_above(firing, aim.beams()));
   if (options.halo) beside_ = beams_beside(firing, aim.beams(), profile);
 }
 
@@ -134,93 +129,156 @@ void BeamModel::echoes(const FiringTable& firing, const Aim& aim, const SweepSpa
     trace_cpu_s += thread_cpu_s() - before_s;
     w.centre.keep(first * channels, w.rays, w.hits);
   });
-  // A beam that is a line has no outer rays to settle.
+  // A beam that is a line has no outer rays, and no sides.
   if (footprint_.around() == 0) {
-    w.settled.assign(w.centre.size(), 1);
-    for (std::size_t i = 0; i < w.settled.size(); ++i) w.settled[i] = !pane_material_[w.centre.material[i]];
+    w.open.resize(w.centre.size());
+    for (std::size_t i = 0; i < w.open.size(); ++i) w.open[i] = pane_material_[w.centre.material[i]];
   } else if (adaptive_) {
-    neighbours_.settle(w.centre, pane_material_, w.settled);
+    neighbours_.look(w.centre, pane_material_, w.open);
   } else {
-    w.settled.assign(w.centre.size(), 0);
+    w.open.assign(w.centre.size(), side::all);
   }
   for_batches(split_cycles_, [&](std::size_t first) {
     w.blocked.assign(w.rays.size(), 0);
     if (body_) meet_own_body(firing, aim, span, motion, static_cast<std::int64_t>(first), first * channels, w);
-    point_outer(aim, w);
-    settle_outer(first * channels, tracer.base(), w);
-    const double before_s = thread_cpu_s();
-    add_split(tracer, first * channels, w);
-    trace_cpu_s += thread_cpu_s() - before_s;
+    find_split(first * channels, w);
+    place_outer(aim, first * channels, tracer.base(), w);
+    put_whole(first * channels, w);
+    add_split(tracer, first * channels, w, trace_cpu_s);
   });
   if (options_.halo) add_halos(w);
   std::stable_sort(w.echoes.others.begin(), w.echoes.others.end(),
                    [](const auto& a, const auto& b) { return a.firing < b.firing; });
 }
 
-void BeamModel::point_outer(const Aim& aim, BeamWorkspace& w) const {
+/// Beams that have an open side, with what their centre rays met as their first parts.
+void BeamModel::find_split(std::size_t first, BeamWorkspace& w) const {
   const std::size_t n = w.rays.size();
-  for (auto* v : {&w.dx, &w.dy, &w.dz}) v->resize(footprint_.around() * n);
-  for (std::size_t k = 0; k < footprint_.around(); ++k) {
-    const std::size_t at = k * n;
-    if (outer_.empty())
-      aim.directions(w.aimed, footprint_.table(w.aimed.own, k), &w.dx[at], &w.dy[at], &w.dz[at]);
-    else
-      aim.directions(w.aimed, outer_[k], &w.dx[at], &w.dy[at], &w.dz[at]);
+  const CentreField& c = w.centre;
+  w.split.clear();
+  w.panes.clear();
+  w.signal.resize(n);
+  reflectance_.signals(n, &c.material[first], &c.cos_incidence[first], w.signal.data());
+  // Channel by channel: edges are long and mostly level, and rays that follow one look the same way.
+  for (std::size_t channel = 0; channel < channels_; ++channel)
+    for (std::size_t i = channel; i < n; i += channels_)
+      if (w.open[first + i] && !w.blocked[i]) w.split.push_back(static_cast<std::uint32_t>(i));
+  w.split_beams += w.split.size();
+  if (w.parts.size() < w.split.size()) w.parts.resize(w.split.size());
+  for (std::size_t b = 0; b < w.split.size(); ++b) {
+    const std::size_t i = w.split[b], f = first + i;
+    w.parts[b].clear();
+    if (c.t_m[f] <= 0) continue;
+    const double macro_m = c.t_m[f] - static_cast<double>(c.relief_m[f]);
+    add_part(w, b,
+             {c.t_m[f], w.signal[i], c.cos_incidence[f], static_cast<float>(macro_m * static_cast<double>(c.facing[f])),
+              c.nx[f], c.ny[f], c.nz[f], c.instance[f], 0, ReturnKind::surface},
+             c.material[f], w.rays, i);
   }
 }
 
-/// Beams on one plane: their outer rays are put on it, with its relief, without tracing.
-void BeamModel::settle_outer(std::size_t first, const Vector3d& base, BeamWorkspace& w) const {
+/// Lists of the beams that ask for more than a plane, and room for what is traced: beam after beam, for the rays of one
+/// look the same way.
+void BeamModel::prepare_outer(std::size_t first, BeamWorkspace& w) const {
+  const CentreField& c = w.centre;
+  w.rough.clear();
+  for (std::size_t i = 0; i < w.rays.size() && footprint_.around() > 0; ++i) {
+    const std::size_t f = first + i;
+    if (scene_->relief && c.t_m[f] > 0 && relief_material_[c.material[f]])
+      w.rough.push_back(static_cast<std::uint32_t>(i));
+  }
+  std::uint32_t traced = 0;
+  w.outer_end.clear();
+  for (const std::uint32_t i : w.split) {
+    w.outer_end.push_back(traced);  // share_out() moves it on
+    for (const std::uint8_t sides : sides_) traced += (w.open[first + i] & sides) != 0;
+  }
+  w.outer.resize(traced);
+  w.outer_ray.resize(traced);
+}
+
+/// The outer rays, one of the footprint after the other over all beams: on the plane that their centre met, with its
+/// relief, without tracing; or, on an open side, noted for tracing.
+void BeamModel::place_outer(const Aim& aim, std::size_t first, const Vector3d& base, BeamWorkspace& w) const {
   const std::size_t n = w.rays.size(), around = footprint_.around();
   const CentreField& c = w.centre;
-  for (auto* v : {&w.moment, &w.sum}) v->resize(n);
-  w.t_m.resize(around * n);
-  w.cosine.resize(around * n);
-  w.signal.resize(n);
-  for (std::size_t k = 0; k < around; ++k)
-    meet_plane(n, &c.t_m[first], &c.relief_m[first], &c.nx[first], &c.ny[first], &c.nz[first], w.rays.dx.data(),
-               w.rays.dy.data(), w.rays.dz.data(), &w.dx[k * n], &w.dy[k * n], &w.dz[k * n], &w.t_m[k * n],
-               &w.cosine[k * n]);
-  if (scene_->relief && around > 0) meet_relief(first, base, w);
-
-  reflectance_.signals(n, &c.material[first], &c.cos_incidence[first], w.signal.data());
+  for (auto* v : {&w.moment, &w.sum, &w.t_m, &w.dx, &w.dy, &w.dz}) v->resize(n);
+  w.cosine.resize(n);
+  prepare_outer(first, w);
   begin_mean(n, static_cast<float>(footprint_.weight()[0]), w.signal.data(), &c.t_m[first], w.sum.data(),
              w.moment.data());
   for (std::size_t k = 0; k < around; ++k) {
-    reflectance_.signals(n, &c.material[first], &w.cosine[k * n], w.signal.data());
-    add_to_mean(n, static_cast<float>(footprint_.weight()[k + 1]), w.signal.data(), &w.t_m[k * n], w.sum.data(),
+    point_outer(aim, k, w);
+    meet_plane(n, &c.t_m[first], &c.relief_m[first], &c.nx[first], &c.ny[first], &c.nz[first], w.rays.dx.data(),
+               w.rays.dy.data(), w.rays.dz.data(), w.dx.data(), w.dy.data(), w.dz.data(), w.t_m.data(),
+               w.cosine.data());
+    if (!w.rough.empty()) meet_relief(k, first, base, w);
+    reflectance_.signals(n, &c.material[first], w.cosine.data(), w.signal.data());
+    add_to_mean(n, static_cast<float>(footprint_.weight()[k + 1]), w.signal.data(), w.t_m.data(), w.sum.data(),
                 w.moment.data());
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t f = first + i;
-    if (!w.settled[f] || w.blocked[i] || c.t_m[f] <= 0) continue;
-    const bool mean = around > 0 && w.sum[i] > 0;
-    w.echoes.put(f, {mean ? w.moment[i] / w.sum[i] : c.t_m[f], static_cast<float>(w.sum[i]), c.cos_incidence[f],
-                     c.nx[f], c.ny[f], c.nz[f], c.instance[f], ReturnKind::surface});
+    share_out(k, first, w);
   }
 }
 
-void BeamModel::meet_relief(std::size_t first, const Vector3d& base, BeamWorkspace& w) const {
-  const std::size_t n = w.rays.size();
+void BeamModel::point_outer(const Aim& aim, std::size_t k, BeamWorkspace& w) const {
+  if (outer_.empty())
+    aim.directions(w.aimed, footprint_.table(w.aimed.own, k), w.dx.data(), w.dy.data(), w.dz.data());
+  else
+    aim.directions(w.aimed, outer_[k], w.dx.data(), w.dy.data(), w.dz.data());
+}
+
+void BeamModel::meet_relief(std::size_t k, std::size_t first, const Vector3d& base, BeamWorkspace& w) const {
   const CentreField& c = w.centre;
-  w.rough.clear();
+  w.on_relief.clear();
   w.relief.clear();
-  w.relief.reserve(footprint_.around() * n);
-  for (std::size_t k = 0; k < footprint_.around(); ++k)
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t f = first + i, at = k * n + i;
-      if (!w.settled[f] || !relief_material_[c.material[f]] || c.t_m[f] <= 0) continue;
-      const double nd = -static_cast<double>(w.cosine[at]);
-      if (!raycast::ReliefBatch::applies(nd)) continue;
-      w.relief.push_back(base.x() + w.rays.ox[i] + w.t_m[at] * w.dx[at], base.y() + w.rays.oy[i] + w.t_m[at] * w.dy[at],
-                         static_cast<float>(w.dx[at]), static_cast<float>(w.dy[at]), c.nx[f], c.ny[f], c.nz[f],
-                         static_cast<float>(nd));
-      w.rough.push_back(static_cast<std::uint32_t>(at));
-    }
+  w.relief.reserve(w.rays.size());
+  for (const std::uint32_t i : w.rough) {
+    const std::size_t f = first + i;
+    const double nd = -static_cast<double>(w.cosine[i]);
+    if ((w.open[f] & sides_[k]) != 0 || !raycast::ReliefBatch::applies(nd)) continue;
+    w.relief.push_back(base.x() + w.rays.ox[i] + w.t_m[i] * w.dx[i], base.y() + w.rays.oy[i] + w.t_m[i] * w.dy[i],
+                       static_cast<float>(w.dx[i]), static_cast<float>(w.dy[i]), c.nx[f], c.ny[f], c.nz[f],
+                       static_cast<float>(nd));
+    w.on_relief.push_back(i);
+  }
   w.relief.solve(*scene_->relief);
-  for (std::size_t k = 0; k < w.rough.size(); ++k) {
-    w.t_m[w.rough[k]] += static_cast<double>(w.relief.s_m()[k]);
-    w.cosine[w.rough[k]] = w.relief.cos_incidence()[k];
+  for (std::size_t r = 0; r < w.on_relief.size(); ++r) {
+    const std::uint32_t i = w.on_relief[r];
+    w.t_m[i] += static_cast<double>(w.relief.s_m()[r]);
+    w.cosine[i] = w.relief.cos_incidence()[r];
+  }
+}
+
+/// The k-th ray of the beams that are told apart: a part, or to be traced.
+void BeamModel::share_out(std::size_t k, std::size_t first, BeamWorkspace& w) const {
+  const CentreField& c = w.centre;
+  const auto number = static_cast<std::uint16_t>(k + 1);
+  const auto weight = static_cast<float>(footprint_.weight()[number]);
+  for (std::size_t b = 0; b < w.split.size(); ++b) {
+    const std::size_t i = w.split[b], f = first + i;
+    if ((w.open[f] & sides_[k]) != 0) {
+      const std::size_t j = w.outer_end[b]++;
+      copy_ray(w.rays, i, w.outer, j);
+      w.outer.dx[j] = w.dx[i], w.outer.dy[j] = w.dy[i], w.outer.dz[j] = w.dz[i];
+      w.outer_ray[j] = number;
+    } else if (c.t_m[f] > 0) {
+      const double macro_m = c.t_m[f] - static_cast<double>(c.relief_m[f]);
+      w.parts[b].push_back({w.t_m[i], weight * w.signal[i], w.cosine[i],
+                            static_cast<float>(macro_m * static_cast<double>(c.facing[f])), c.nx[f], c.ny[f], c.nz[f],
+                            c.instance[f], number, ReturnKind::surface});
+    }
+  }
+}
+
+/// Beams without an open side: one echo.
+void BeamModel::put_whole(std::size_t first, BeamWorkspace& w) const {
+  const CentreField& c = w.centre;
+  for (std::size_t i = 0; i < w.rays.size(); ++i) {
+    const std::size_t f = first + i;
+    if (w.open[f] || w.blocked[i] || c.t_m[f] <= 0) continue;
+    const bool mean = footprint_.around() > 0 && w.sum[i] > 0;
+    w.echoes.put(f, {mean ? w.moment[i] / w.sum[i] : c.t_m[f], static_cast<float>(w.sum[i]), c.cos_incidence[f],
+                     c.nx[f], c.ny[f], c.nz[f], c.instance[f], ReturnKind::surface});
   }
 }
 
@@ -245,32 +303,15 @@ void BeamModel::add_part(BeamWorkspace& w, std::size_t beam, Part part, std::uin
   w.parts[beam].push_back(part);
 }
 
-/// Beams whose outer rays may meet something else than their centre: traced, told apart.
-void BeamModel::add_split(const SweepTracer& tracer, std::size_t first, BeamWorkspace& w) const {
-  const std::size_t n = w.rays.size(), around = footprint_.around();
-  const CentreField& c = w.centre;
-  w.split.clear();
-  for (std::size_t i = 0; i < n; ++i)
-    if (!w.settled[first + i] && !w.blocked[i]) w.split.push_back(static_cast<std::uint32_t>(i));
+/// Beams with an open side: their rays on that side traced, their parts told apart.
+void BeamModel::add_split(const SweepTracer& tracer, std::size_t first, BeamWorkspace& w, double& trace_cpu_s) const {
   if (w.split.empty()) return;
-  w.split_beams += w.split.size();
-  if (w.parts.size() < w.split.size()) w.parts.resize(w.split.size());
-  w.panes.clear();
-  reflectance_.signals(n, &c.material[first], &c.cos_incidence[first], w.signal.data());
-  for (std::size_t b = 0; b < w.split.size(); ++b) {
-    const std::size_t i = w.split[b], f = first + i;
-    w.parts[b].clear();
-    if (c.t_m[f] <= 0) continue;
-    const double macro_m = c.t_m[f] - static_cast<double>(c.relief_m[f]);
-    add_part(w, b,
-             {c.t_m[f], w.signal[i], c.cos_incidence[f], static_cast<float>(macro_m * static_cast<double>(c.facing[f])),
-              c.nx[f], c.ny[f], c.nz[f], c.instance[f], 0, ReturnKind::surface},
-             c.material[f], w.rays, i);
-  }
-  if (around > 0) trace_outer(tracer, w);
+  if (w.outer.size() > 0) trace_outer(tracer, w, trace_cpu_s);
   if (w.panes.size() > 0) {
     w.found.clear();
+    const double before_s = thread_cpu_s();
     w.traced_rays += glass_.follow(tracer, w.panes, w.found);
+    trace_cpu_s += thread_cpu_s() - before_s;
     for (const PartOfBeam& found : w.found) w.parts[found.beam].push_back(found.part);
   }
   for (std::size_t b = 0; b < w.split.size(); ++b) {
@@ -280,32 +321,28 @@ void BeamModel::add_split(const SweepTracer& tracer, std::size_t first, BeamWork
   }
 }
 
-void BeamModel::trace_outer(const SweepTracer& tracer, BeamWorkspace& w) const {
-  const std::size_t n = w.rays.size(), around = footprint_.around(), count = around * w.split.size();
-  Rays& outer = w.outer;
-  outer.resize(count);
-  for (std::size_t b = 0, j = 0; b < w.split.size(); ++b)
-    for (std::size_t k = 0; k < around; ++k, ++j) {
-      const std::size_t i = w.split[b], at = k * n + i;
-      copy_ray(w.rays, i, outer, j);
-      outer.dx[j] = w.dx[at], outer.dy[j] = w.dy[at], outer.dz[j] = w.dz[at];
-    }
+void BeamModel::trace_outer(const SweepTracer& tracer, BeamWorkspace& w, double& trace_cpu_s) const {
+  const Rays& outer = w.outer;
+  const std::size_t count = outer.size();
   pad_to_tiles(count, w.order);
+  const double before_s = thread_cpu_s();
   tracer.trace(outer, w.order, w.hits);
+  trace_cpu_s += thread_cpu_s() - before_s;
   w.traced_rays += count;
   for (std::size_t j = 0; j < count; ++j)
     if (w.hits.instance[j] == Hits::nothing) w.hits.material[j] = 0;
   w.signal.resize(std::max(w.signal.size(), count));
   reflectance_.signals(count, w.hits.material.data(), w.hits.cos_incidence.data(), w.signal.data());
   const Hits& h = w.hits;
-  for (std::size_t j = 0; j < count; ++j) {
+  for (std::size_t b = 0, j = 0; j < count; ++j) {
+    while (j == w.outer_end[b]) ++b;
     if (h.instance[j] == Hits::nothing) continue;
     const double facing = -(static_cast<double>(h.nx[j]) * outer.dx[j] + static_cast<double>(h.ny[j]) * outer.dy[j] +
                             static_cast<double>(h.nz[j]) * outer.dz[j]);
-    add_part(w, j / around,
+    add_part(w, b,
              {h.t_m[j], w.signal[j], h.cos_incidence[j],
               static_cast<float>((h.t_m[j] - static_cast<double>(h.relief_m[j])) * facing), h.nx[j], h.ny[j], h.nz[j],
-              h.instance[j], static_cast<std::uint16_t>(j % around + 1), ReturnKind::surface},
+              h.instance[j], w.outer_ray[j], ReturnKind::surface},
              h.material[j], outer, j);
   }
 }

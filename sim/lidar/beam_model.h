@@ -26,18 +26,22 @@ struct Batches {
 struct BeamWorkspace {
   CentreField centre;
   EchoField echoes;
-  std::vector<std::uint8_t> settled;
-  std::size_t traced_rays = 0;  ///< in the last sweep: centres, outer rays, and those beyond panes
-  std::size_t split_beams = 0;  ///< beams whose outer rays were traced
+  std::vector<std::uint8_t> open;  ///< sides on which a beam's outer rays are traced
+  std::size_t traced_rays = 0;     ///< in the last sweep: centres, outer rays, and those beyond panes
+  std::size_t split_beams = 0;     ///< beams of which outer rays were traced
 
   // Of one batch.
   AimedCycles aimed, body_aimed;
   raycast::Rays rays, body_rays, outer;
   raycast::Hits hits;
-  std::vector<double> dx, dy, dz;  // of the outer rays: one footprint ray after the other, each over all beams
+  std::vector<double> dx, dy, dz;  // of one of the footprint's rays, over all beams
   std::vector<double> t_m, moment, sum;
   std::vector<float> cosine, signal;
-  std::vector<std::uint32_t> rough, split, order;
+  std::vector<std::uint32_t> rough, on_relief;  // beams that met relief, and those whose rays are put on it
+  std::vector<std::uint32_t> split;             // beams that are told apart
+  std::vector<std::uint32_t> outer_end;         // of each of them: where its rays that are traced end, in `outer`
+  std::vector<std::uint16_t> outer_ray;         // their numbers in the footprint
+  std::vector<std::uint32_t> order;
   raycast::ReliefBatch relief;
   PaneRays panes;
   std::vector<std::vector<Part>> parts;
@@ -57,11 +61,15 @@ class BeamModel {
               const raycast::SweepTracer& tracer, const Batches& batches, BeamWorkspace& w, double& trace_cpu_s) const;
 
  private:
-  void meet_relief(std::size_t first, const Eigen::Vector3d& base, BeamWorkspace& w) const;
-  void point_outer(const Aim& aim, BeamWorkspace& w) const;
-  void settle_outer(std::size_t first, const Eigen::Vector3d& base, BeamWorkspace& w) const;
-  void add_split(const raycast::SweepTracer& tracer, std::size_t first, BeamWorkspace& w) const;
-  void trace_outer(const raycast::SweepTracer& tracer, BeamWorkspace& w) const;
+  void prepare_outer(std::size_t first, BeamWorkspace& w) const;
+  void find_split(std::size_t first, BeamWorkspace& w) const;
+  void place_outer(const Aim& aim, std::size_t first, const Eigen::Vector3d& base, BeamWorkspace& w) const;
+  void point_outer(const Aim& aim, std::size_t k, BeamWorkspace& w) const;
+  void meet_relief(std::size_t k, std::size_t first, const Eigen::Vector3d& base, BeamWorkspace& w) const;
+  void share_out(std::size_t k, std::size_t first, BeamWorkspace& w) const;
+  void put_whole(std::size_t first, BeamWorkspace& w) const;
+  void add_split(const raycast::SweepTracer& tracer, std::size_t first, BeamWorkspace& w, double& trace_cpu_s) const;
+  void trace_outer(const raycast::SweepTracer& tracer, BeamWorkspace& w, double& trace_cpu_s) const;
   /// A hit of rays[index]; `part` has the signal of a whole beam.
   void add_part(BeamWorkspace& w, std::size_t beam, Part part, std::uint16_t material, const raycast::Rays& rays,
                 std::size_t index) const;
@@ -73,7 +81,8 @@ class BeamModel {
 
   BeamOptions options_;
   Footprint footprint_;
-  std::vector<BeamTable> outer_;  // of the channels, where they do not change
+  std::vector<BeamTable> outer_;     // of the channels, where they do not change
+  std::vector<std::uint8_t> sides_;  // of the centre that each of them lies on
   bool adaptive_;
   double separation_m_;
   Reflectance reflectance_;
@@ -85,7 +94,7 @@ class BeamModel {
   Neighbours neighbours_;
   std::vector<std::vector<Beside>> beside_;
   double range_offset_m_;
-  std::size_t split_cycles_;
+  std::size_t channels_, split_cycles_;
 };
 
 }  // namespace tarmac::sim::lidar

@@ -15,8 +15,23 @@ bool on_one_plane(const Part& a, const Part& b) {
          a.nx * b.nx + a.ny * b.ny + a.nz * b.nz > same_normal;
 }
 
-/// The part that stands for the surface which gave the most: the centre ray's where it met it, else the strongest.
+/// The part that stands for a surface which all rays met: the centre ray's, else the strongest.
+const Part& main_part_of_one(std::span<const Part> parts) {
+  const Part* chief = &parts.front();
+  for (const Part& p : parts)
+    if (chief->ray != 0 && (p.ray == 0 || p.signal > chief->signal)) chief = &p;
+  return *chief;
+}
+
+bool one_surface(std::span<const Part> parts) {
+  bool one = true;
+  for (const Part& p : parts) one &= (p.instance == parts.front().instance) & (p.kind == parts.front().kind);
+  return one;
+}
+
+/// The same for the surface which gave the most.
 const Part& main_part(std::span<const Part> parts) {
+  if (one_surface(parts)) return main_part_of_one(parts);
   const Part* best = &parts.front();
   float most = -1;
   for (const Part& of : parts) {
@@ -58,6 +73,15 @@ Echo echo_of(std::span<const Part> parts) {
 
 void tell_apart(std::vector<Part>& parts, double separation_m, std::vector<Echo>& echoes) {
   echoes.clear();
+  double nearest = parts.front().t_m, farthest = nearest;
+  for (const Part& p : parts) {
+    nearest = std::min(nearest, p.t_m);
+    farthest = std::max(farthest, p.t_m);
+  }
+  if (farthest - nearest <= std::min(separation_m, mixed_from_m)) {  // one echo and not mixed, in whatever order
+    echoes.push_back(echo_of(parts));
+    return;
+  }
   std::sort(parts.begin(), parts.end(),
             [](const Part& a, const Part& b) { return a.t_m != b.t_m ? a.t_m < b.t_m : a.ray < b.ray; });
   std::size_t surfaces = 0;

@@ -37,7 +37,7 @@ struct Echo {
 /// is the mean by signal, so that it leans to the stronger surface; its kind is that of its strongest surface, but
 ///   mixed  where it joins surfaces more than 5 cm apart that are no plane,
 ///   edge   where it is a surface, and one of several such echoes.
-/// Nearest first. `parts` comes back sorted.
+/// Nearest first. `parts`, of which there must be one, may come back sorted.
 void tell_apart(std::vector<Part>& parts, double separation_m, std::vector<Echo>& echoes);
 
 }  // namespace tarmac::sim::lidar

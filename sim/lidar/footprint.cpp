@@ -54,6 +54,17 @@ BeamTable Footprint::table(const BeamTable& centre, std::size_t k) const {
   return result;
 }
 
+std::uint8_t Footprint::sides(std::size_t k) const {
+  const double horizontal = horizontal_rad_[k], vertical = vertical_rad_[k];
+  constexpr double beside = 1e-9;  // sines of multiples of 180 degrees are not quite 0
+  return static_cast<std::uint8_t>((horizontal > beside    ? side::left
+                                    : horizontal < -beside ? side::right
+                                                           : 0) |
+                                   (vertical > beside    ? side::above
+                                    : vertical < -beside ? side::below
+                                                         : 0));
+}
+
 std::vector<Above> beams_above(const FiringTable& firing, const BeamTable& beams) {
   constexpr double same_row = 1e-4;
   std::vector<Above> above(beams.size());

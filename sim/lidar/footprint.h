@@ -10,6 +10,11 @@
 
 namespace tarmac::sim::lidar {
 
+/// Sides of a beam, as bits.
+namespace side {
+inline constexpr std::uint8_t left = 1, right = 2, above = 4, below = 8, all = 15;
+}
+
 /// The centre ray and the rays around it. Intensity over the cross-section is Gaussian, `divergence_mrad` its full
 /// width at half maximum; every ray stands for the same area, so its weight is the intensity where it points:
 ///   w(a) ~ exp(-ln 2 a^2),   a = offset / half width.
@@ -25,6 +30,8 @@ class Footprint {
   const std::vector<double>& weight() const { return weight_; }
   /// The k-th of those around each of the beams.
   BeamTable table(const BeamTable& centre, std::size_t k) const;
+  /// Sides of the centre that the k-th of those around it lies on.
+  std::uint8_t sides(std::size_t k) const;
 
  private:
   std::vector<double> weight_, horizontal_rad_, vertical_rad_;

@@ -207,54 +207,74 @@ int sector_below(float angle) {
 
 }  // namespace
 
-void cast_shades(const std::vector<MovingPart>& parts, const BatchBounds& batch, double reach_m, Shades& shades) {
-  shades.clear();
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const MovingPart& part = parts[i];
-    // As it is at the middle of the batch's time, with what it moves until its ends as spare.
-    const Frame frame = part.track.at(0.5 * (batch.t_first_ns + batch.t_last_ns));
-    double spare_m = batch.radius_m;
-    const Corners corners = corners_of(part.bounds, frame, batch.centre_m);
-    if (!part.track.still()) {
-      const double radius_m =
-          static_cast<double>(part.bounds.low.cwiseAbs().cwiseMax(part.bounds.high.cwiseAbs()).norm());
-      double moved_m = 0;
-      for (const double t_ns : {batch.t_first_ns, batch.t_last_ns}) {
-        const Frame then = part.track.at(t_ns);
-        moved_m = std::max(moved_m, (then.p - frame.p).norm() + (then.R - frame.R).norm() * radius_m);
-      }
-      // Between the middle and an end nothing is farther off the straight way than the bow of its acceleration; twice
-      // that, since corners of the bounds may lie outside of the actor's sphere.
-      const double half_s = 0.5e-9 * (batch.t_last_ns - batch.t_first_ns);
-      spare_m += moved_m + 2 * part.acceleration_m_s2 * half_s * half_s / 8 + 1e-3;
+namespace {
+
+/// What a part hides from a batch, as it is at the middle of the batch's time, with what it moves until its ends as
+/// spare.
+Shade shade_of(const MovingPart& part, const BatchBounds& batch) {
+  const Frame frame = part.track.at(0.5 * (batch.t_first_ns + batch.t_last_ns));
+  double spare_m = batch.radius_m;
+  if (!part.track.still()) {
+    const double radius_m =
+        static_cast<double>(part.bounds.low.cwiseAbs().cwiseMax(part.bounds.high.cwiseAbs()).norm());
+    double moved_m = 0;
+    for (const double t_ns : {batch.t_first_ns, batch.t_last_ns}) {
+      const Frame then = part.track.at(t_ns);
+      moved_m = std::max(moved_m, (then.p - frame.p).norm() + (then.R - frame.R).norm() * radius_m);
     }
-    Shade shade = shade_at(corners, horizontal_distance(corners, frame), spare_m);
+    // Between the middle and an end nothing is farther off the straight way than the bow of its acceleration; twice
+    // that, since corners of the bounds may lie outside of the actor's sphere.
+    const double half_s = 0.5e-9 * (batch.t_last_ns - batch.t_first_ns);
+    spare_m += moved_m + 2 * part.acceleration_m_s2 * half_s * half_s / 8 + 1e-3;
+  }
+  const Corners corners = corners_of(part.bounds, frame, batch.centre_m);
+  return shade_at(corners, horizontal_distance(corners, frame), spare_m);
+}
+
+/// Calls visit(sector) for every sector that the shade reaches into.
+template <class Visit>
+void for_sectors(const Shade& shade, const Visit& visit) {
+  const int first = shade.all_round ? 0 : sector_below(shade.angle + shade.angle_low);
+  const int end = shade.all_round ? Shades::sectors - 1 : sector_below(shade.angle + shade.angle_high);
+  for (int k = first; k <= std::min(end, first + Shades::sectors - 1); ++k)
+    visit(static_cast<std::size_t>(((k % Shades::sectors) + Shades::sectors) % Shades::sectors));
+}
+
+}  // namespace
+
+Whereabouts whereabouts_of(const std::vector<MovingPart>& parts, const Vector3d& centre_m, double span_ns) {
+  Whereabouts result{centre_m, {}};
+  const BatchBounds all{centre_m, Whereabouts::near_m, 0, span_ns};
+  for (const MovingPart& part : parts) {
+    std::uint64_t sectors = 0;
+    for_sectors(shade_of(part, all), [&](std::size_t sector) { sectors |= std::uint64_t{1} << sector; });
+    result.sectors.push_back(sectors);
+  }
+  return result;
+}
+
+void cast_shades(const std::vector<MovingPart>& parts, const Whereabouts& whereabouts, const BatchBounds& batch,
+                 double reach_m, Shades& shades) {
+  shades.clear();
+  const bool known = whereabouts.holds(batch);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (known && (whereabouts.sectors[i] & batch.sectors) == 0) continue;
+    Shade shade = shade_of(parts[i], batch);
     if (static_cast<double>(shade.nearest_m) > reach_m) continue;
     shade.part = static_cast<std::uint32_t>(i);
     shade.z_bins = z_bins_of(shade);
     const auto index = static_cast<std::uint32_t>(shades.all.size());
-    shades.all.push_back(shade);
-    const int first = shade.all_round ? 0 : sector_below(shade.angle + shade.angle_low);
-    const int last = shade.all_round
-                         ? Shades::sectors - 1
-                         : std::min(first + Shades::sectors - 1, sector_below(shade.angle + shade.angle_high));
-    for (int k = first; k <= last; ++k) {
-      const auto sector = static_cast<std::size_t>(((k % Shades::sectors) + Shades::sectors) % Shades::sectors);
+    for_sectors(shade, [&](std::size_t sector) {
       shades.in_sector[sector].push_back(index);
       shades.z_bins[sector] |= shade.z_bins;
-    }
+    });
+    shades.all.push_back(shade);
   }
   shades.seen_by.assign(shades.all.size(), 0);
 }
 
-void Shades::clear() {
-  all.clear();
-  for (auto& list : in_sector) list.clear();
-  z_bins.fill(0);
-  tile = 0;
-}
-
 namespace {
+
 TARMAC_VECTOR_LOOP void bins_of(const float* __restrict x, const float* __restrict y, const float* __restrict z,
                                 int* __restrict sector, int* __restrict bin) {
 #pragma GCC ivdep
@@ -269,6 +289,73 @@ TARMAC_VECTOR_LOOP void bins_of(const float* __restrict x, const float* __restri
   }
 }
 
+struct Extent {
+  double low, high;
+};
+
+TARMAC_VECTOR_LOOP Extent extent_of(std::size_t count, const double* __restrict values) {
+  constexpr std::size_t lanes = 8;  // extremes of each lane, then of all: nothing that depends on an order
+  double low[lanes], high[lanes];
+  for (std::size_t l = 0; l < lanes; ++l) low[l] = high[l] = values[0];
+  std::size_t k = 0;
+  for (; k + lanes <= count; k += lanes)
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const double v = values[k + l];
+      low[l] = v < low[l] ? v : low[l];
+      high[l] = v > high[l] ? v : high[l];
+    }
+  for (; k < count; ++k) {
+    low[0] = values[k] < low[0] ? values[k] : low[0];
+    high[0] = values[k] > high[0] ? values[k] : high[0];
+  }
+  for (std::size_t l = 1; l < lanes; ++l) {
+    low[0] = low[l] < low[0] ? low[l] : low[0];
+    high[0] = high[l] > high[0] ? high[l] : high[0];
+  }
+  return {low[0], high[0]};
+}
+
+}  // namespace
+
+BatchBounds bounds_of(const Rays& rays, const Vector3d& base) {
+  BatchBounds batch;
+  if (rays.size() == 0) return batch;
+  Vector3d low, high;
+  const std::vector<double>* axes[3] = {&rays.ox, &rays.oy, &rays.oz};
+  for (int k = 0; k < 3; ++k) {
+    const Extent extent = extent_of(rays.size(), axes[k]->data());
+    low[k] = extent.low;
+    high[k] = extent.high;
+  }
+  const auto [first, last] = std::minmax_element(rays.t_ns.begin(), rays.t_ns.end());
+  batch.centre_m = base + 0.5 * (low + high);
+  batch.radius_m = 0.5 * (high - low).norm() + 1e-4;
+  batch.t_first_ns = *first;
+  batch.t_last_ns = *last;
+  batch.sectors = 0;
+  constexpr std::size_t block = SweepTracer::tile;
+  for (std::size_t first_ray = 0; first_ray < rays.size(); first_ray += block) {
+    alignas(64) float x[block] = {}, y[block] = {}, z[block] = {};
+    alignas(64) int sector[block], bin[block];
+    const std::size_t count = std::min(block, rays.size() - first_ray);
+    for (std::size_t k = 0; k < count; ++k) {
+      x[k] = static_cast<float>(rays.dx[first_ray + k]);
+      y[k] = static_cast<float>(rays.dy[first_ray + k]);
+    }
+    bins_of(x, y, z, sector, bin);
+    for (std::size_t k = 0; k < count; ++k) batch.sectors |= std::uint64_t{1} << sector[k];
+  }
+  return batch;
+}
+
+void Shades::clear() {
+  all.clear();
+  for (auto& list : in_sector) list.clear();
+  z_bins.fill(0);
+  tile = 0;
+}
+
+namespace {
 TARMAC_VECTOR_LOOP void diamond_angles(const float* __restrict x, const float* __restrict y, float* __restrict angle) {
 #pragma GCC ivdep
   for (std::size_t k = 0; k < tile; ++k) {

@@ -53,6 +53,27 @@ struct Shade {
   bool covers(const TileView& view) const;
 };
 
+/// Origins and times of a batch of rays.
+struct BatchBounds {
+  Eigen::Vector3d centre_m{0, 0, 0};  ///< world
+  double radius_m = 0;
+  double t_first_ns = 0, t_last_ns = 0;
+  std::uint64_t sectors = ~std::uint64_t{0};  ///< that its rays look into
+};
+/// Of rays whose origins count from `base`.
+BatchBounds bounds_of(const Rays& rays, const Eigen::Vector3d& base);
+
+/// Where each part may be seen at all during the sweep, from anywhere near a place: what most batches, which look one
+/// way only, need not cast a shade for.
+struct Whereabouts {
+  static constexpr double near_m = 2;
+  Eigen::Vector3d centre_m{0, 0, 0};
+  std::vector<std::uint64_t> sectors;  ///< of each part, a bit each; empty = not made yet
+  bool holds(const BatchBounds& batch) const {
+    return !sectors.empty() && (batch.centre_m - centre_m).norm() + batch.radius_m <= near_m;
+  }
+};
+
 /// The shades of a batch, by 64 sectors of the plane.
 struct Shades {
   static constexpr int sectors = 64;
@@ -68,15 +89,10 @@ struct Shades {
 /// Angle in the plane, 0 to 4 in the sense of atan2, monotone with it and much cheaper; a turn is 4.
 float diamond_angle(float x, float y);
 
-/// Origins and times of a batch of rays.
-struct BatchBounds {
-  Eigen::Vector3d centre_m{0, 0, 0};  ///< world
-  double radius_m = 0;
-  double t_first_ns = 0, t_last_ns = 0;
-};
-
+Whereabouts whereabouts_of(const std::vector<MovingPart>& parts, const Eigen::Vector3d& centre_m, double span_ns);
 /// Those parts that rays of the batch may meet within reach.
-void cast_shades(const std::vector<MovingPart>& parts, const BatchBounds& batch, double reach_m, Shades& shades);
+void cast_shades(const std::vector<MovingPart>& parts, const Whereabouts& whereabouts, const BatchBounds& batch,
+                 double reach_m, Shades& shades);
 
 /// Shades that the rays of a tile may lie in, judged by sectors and bins of height; each once.
 void candidates_of(const RTCRay16& packed, const int* valid, Shades& shades, std::vector<std::uint32_t>& candidates);

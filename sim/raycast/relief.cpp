@@ -11,6 +11,7 @@ namespace {
 
 constexpr float tolerance_m = 50e-6f;  // of height
 constexpr int max_iterations = 40;
+constexpr std::size_t block = 256;  // rays that iterate together: their arrays stay in the first-level cache
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// One step of every ray, in arrays of equal length.
@@ -86,30 +87,31 @@ TARMAC_VECTOR_LOOP void shade(std::size_t count, const float* __restrict dx, con
 
 void ReliefBatch::reserve(std::size_t count) {
   if (px_m_.size() >= count) return;
-  for (auto* v : {&px_m_, &py_m_, &ax_m_, &ay_m_, &x_m_, &y_m_}) v->resize(count);
-  for (auto* v :
-       {&dx_,  &dy_,  &nx_, &ny_,    &nz_,    &nd_,        &s_out_,   &slope_x_out_, &slope_y_out_, &cosine_, &adx_,
-        &ady_, &and_, &s_,  &above_, &below_, &highest_m_, &retreat_, &height_m_,    &slope_x_,     &slope_y_})
+  for (auto* v : {&px_m_, &py_m_}) v->resize(count);
+  for (auto* v : {&dx_, &dy_, &nx_, &ny_, &nz_, &nd_, &s_out_, &slope_x_out_, &slope_y_out_, &cosine_})
     v->resize(count);
-  ray_.resize(count);
-  done_.resize(count);
-  kept_.resize(count);
+  for (auto* v : {&ax_m_, &ay_m_, &x_m_, &y_m_}) v->resize(block);
+  for (auto* v : {&adx_, &ady_, &and_, &s_, &above_, &below_, &highest_m_, &retreat_, &height_m_, &slope_x_, &slope_y_})
+    v->resize(block);
+  ray_.resize(block);
+  done_.resize(block);
+  kept_.resize(block);
 }
 
 /// Notes where each ray stands and moves those that are not done to the front; returns how many there are.
-std::size_t ReliefBatch::compact(std::size_t active) {
+std::size_t ReliefBatch::compact(std::size_t first, std::size_t count, std::size_t active) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < active; ++k) {
     kept_[kept] = static_cast<std::uint32_t>(k);
     kept += done_[k] == 0;
   }
-  if (active == size_) {  // the rays are still in their own order
-    std::copy_n(s_.begin(), size_, s_out_.begin());
-    std::copy_n(slope_x_.begin(), size_, slope_x_out_.begin());
-    std::copy_n(slope_y_.begin(), size_, slope_y_out_.begin());
+  if (active == count) {  // the rays are still in their own order
+    std::copy_n(s_.begin(), count, &s_out_[first]);
+    std::copy_n(slope_x_.begin(), count, &slope_x_out_[first]);
+    std::copy_n(slope_y_.begin(), count, &slope_y_out_[first]);
   } else {
     for (std::size_t k = 0; k < active; ++k) {
-      const std::uint32_t ray = ray_[k];
+      const std::size_t ray = first + ray_[k];
       s_out_[ray] = s_[k], slope_x_out_[ray] = slope_x_[k], slope_y_out_[ray] = slope_y_[k];
     }
   }
@@ -125,29 +127,33 @@ std::size_t ReliefBatch::compact(std::size_t active) {
   return kept;
 }
 
-void ReliefBatch::solve(const scenes::Relief& relief) {
-  std::copy_n(px_m_.begin(), size_, ax_m_.begin());
-  std::copy_n(py_m_.begin(), size_, ay_m_.begin());
-  std::copy_n(dx_.begin(), size_, adx_.begin());
-  std::copy_n(dy_.begin(), size_, ady_.begin());
-  std::copy_n(nd_.begin(), size_, and_.begin());
-  std::fill_n(s_.begin(), size_, 0.0f);
-  std::fill_n(above_.begin(), size_, -infinity);
-  std::fill_n(below_.begin(), size_, infinity);
-  std::fill_n(highest_m_.begin(), size_, 0.0f);
-  std::fill_n(retreat_.begin(), size_, 0.5f);
-  for (std::size_t k = 0; k < size_; ++k) ray_[k] = static_cast<std::uint32_t>(k);
+void ReliefBatch::solve_block(const scenes::Relief& relief, std::size_t first, std::size_t count) {
+  std::copy_n(&px_m_[first], count, ax_m_.begin());
+  std::copy_n(&py_m_[first], count, ay_m_.begin());
+  std::copy_n(&dx_[first], count, adx_.begin());
+  std::copy_n(&dy_[first], count, ady_.begin());
+  std::copy_n(&nd_[first], count, and_.begin());
+  std::fill_n(s_.begin(), count, 0.0f);
+  std::fill_n(above_.begin(), count, -infinity);
+  std::fill_n(below_.begin(), count, infinity);
+  std::fill_n(highest_m_.begin(), count, 0.0f);
+  std::fill_n(retreat_.begin(), count, 0.5f);
+  for (std::size_t k = 0; k < count; ++k) ray_[k] = static_cast<std::uint32_t>(k);
   const Iteration it{adx_.data(), ady_.data(),   and_.data(),   height_m_.data(),  slope_x_.data(), slope_y_.data(),
                      s_.data(),   above_.data(), below_.data(), highest_m_.data(), retreat_.data(), done_.data()};
-  std::size_t active = size_;
+  std::size_t active = count;
   for (int i = 0; i < max_iterations && active > 0; ++i) {
     advance(active, ax_m_.data(), ay_m_.data(), adx_.data(), ady_.data(), s_.data(), x_m_.data(), y_m_.data());
     relief.heights_m(active, x_m_.data(), y_m_.data(), height_m_.data(), slope_x_.data(), slope_y_.data());
     bracket(active, it);
     step(active, it);
     // Hardly a ray is done after the first look; it stays where it is until the second.
-    if (i > 0) active = compact(active);
+    if (i > 0) active = compact(first, count, active);
   }
+}
+
+void ReliefBatch::solve(const scenes::Relief& relief) {
+  for (std::size_t first = 0; first < size_; first += block) solve_block(relief, first, std::min(block, size_ - first));
   shade(size_, dx_.data(), dy_.data(), nx_.data(), ny_.data(), nz_.data(), nd_.data(), slope_x_out_.data(),
         slope_y_out_.data(), cosine_.data());
 }

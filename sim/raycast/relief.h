@@ -45,13 +45,14 @@ class ReliefBatch {
   const float* cos_incidence() const { return cosine_.data(); }
 
  private:
-  std::size_t compact(std::size_t active);
+  void solve_block(const scenes::Relief& relief, std::size_t first, std::size_t count);
+  std::size_t compact(std::size_t first, std::size_t count, std::size_t active);
 
   std::size_t size_ = 0;
   std::vector<double> px_m_, py_m_;
   std::vector<float> dx_, dy_, nx_, ny_, nz_, nd_;
   std::vector<float> s_out_, slope_x_out_, slope_y_out_, cosine_;
-  // The rays that still iterate, moved up as others finish.
+  // Of one block: the rays that still iterate, moved up as others finish.
   std::vector<std::uint32_t> ray_, done_, kept_;
   std::vector<double> ax_m_, ay_m_, x_m_, y_m_;
   std::vector<float> adx_, ady_, and_, s_, above_, below_, highest_m_, retreat_, height_m_, slope_x_, slope_y_;

@@ -117,23 +117,12 @@ static void take_over(const RTCRayHit16& local, const int* valid, std::uint32_t 
   }
 }
 
-void SweepTracer::State::cast_shades(const Rays& rays, std::span<const std::uint32_t> order, Shades& shades) const {
+void SweepTracer::State::cast_shades(const Rays& rays, Shades& shades) {
   shades.clear();
-  if (parts.empty()) return;
-  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  std::int32_t t_first = std::numeric_limits<std::int32_t>::max(), t_last = 0;
-  for (const std::uint32_t i : order) {
-    if (i == no_ray) continue;
-    const Vector3d o(rays.ox[i], rays.oy[i], rays.oz[i]);
-    low = low.cwiseMin(o);
-    high = high.cwiseMax(o);
-    t_first = std::min(t_first, rays.t_ns[i]);
-    t_last = std::max(t_last, rays.t_ns[i]);
-  }
-  if (low.x() > high.x()) return;
-  const BatchBounds batch{base + 0.5 * (low + high), 0.5 * (high - low).norm() + 1e-4, static_cast<double>(t_first),
-                          static_cast<double>(t_last)};
-  raycast::cast_shades(parts, batch, static_cast<double>(reach_m), shades);
+  if (parts.empty() || rays.size() == 0) return;
+  const BatchBounds batch = bounds_of(rays, base);
+  if (!whereabouts.holds(batch)) whereabouts = whereabouts_of(parts, batch.centre_m, span_ns);
+  raycast::cast_shades(parts, whereabouts, batch, static_cast<double>(reach_m), shades);
 }
 
 template <class Meet>
@@ -176,7 +165,7 @@ void SweepTracer::trace(const Rays& rays, std::span<const std::uint32_t> order, 
   constexpr std::size_t group = 8;
   PackedTile tiles[group];
   for (PackedTile& t : tiles) s.set_up(t.packet);
-  s.cast_shades(rays, order, s.scratch.shades);
+  s.cast_shades(rays, s.scratch.shades);
   const std::size_t count = order.size() / tile;
   for (std::size_t first = 0; first < count; first += group) {
     const std::size_t here = std::min(group, count - first);
@@ -266,7 +255,7 @@ PackedTiles SweepTracer::pack(const Rays& rays, std::span<const std::uint32_t> o
   }
   Shades shades;
   std::vector<std::uint32_t> candidates;
-  state_->cast_shades(rays, order, shades);
+  state_->cast_shades(rays, shades);
   RTCIntersectContext context = coherent_context();
   for (std::size_t k = 0; k < p.tiles.size() && !shades.empty(); ++k) {
     PackedTile& t = p.tiles[k];

@@ -75,12 +75,13 @@ struct SweepTracer::State {
   float reach_m = 0;
   RTCScene static_scene = nullptr;
   std::vector<MovingPart> parts;  ///< of actors in range
+  Whereabouts whereabouts;        ///< of parts, made by the first rays that need it
   std::size_t actors = 0;
   TraceScratch scratch;
 
   void set_up(RTCRayHit16& packet) const;
   void load(const Rays& rays, std::span<const std::uint32_t> lanes, RTCRayHit16& packet, int* valid) const;
-  void cast_shades(const Rays& rays, std::span<const std::uint32_t> order, Shades& shades) const;
+  void cast_shades(const Rays& rays, Shades& shades);
   /// Calls meet(part, local packet, valid lanes) for every part that a tile's rays may meet, after what stands still
   /// has been met; it puts what it finds into the tile's packet.
   template <class Meet>
