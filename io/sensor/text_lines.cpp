@@ -81,7 +81,7 @@ std::optional<std::int64_t> nanoseconds(std::string_view text) {
     const std::size_t cut = static_cast<std::size_t>(-exponent);
     if (cut >= digits.size()) digits = std::string(cut + 1 - digits.size(), '0') + digits;
     round_up = digits[digits.size() - cut] >= '5';
-    digits.resize(digits.size() - cut);
+    digits.erase(digits.size() - cut);
   }
   const std::optional<std::int64_t> value = parsed<std::int64_t>(digits);
   if (!value || *value == std::numeric_limits<std::int64_t>::max()) return std::nullopt;
