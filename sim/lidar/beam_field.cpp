@@ -161,7 +161,7 @@ void Neighbours::look_up(const CentreField& field, std::vector<std::uint8_t>& op
       const auto i = static_cast<std::size_t>(k * channels + c);
       const bool there = other >= 0 && other < cycles;
       const auto j = static_cast<std::size_t>(there ? other * channels + above.channel : 0);
-      if (there && !differ(s, i, j)) continue;
+      if (there && ((s.t_m[i] <= 0 && s.t_m[j] <= 0) || !differ(s, i, j))) continue;
       open[i] |= side::above;
       if (there) open[j] |= side::below;
     }

@@ -16,11 +16,12 @@ using raycast::Rays;
 using raycast::SweepTracer;
 
 constexpr double light_m_per_ns = 0.299792458;
-constexpr double halo_within_m = 30;
-constexpr float halo_from_signal = 100;
 // Outer rays are traced in portions of a fixed size: which rays share a packet may decide a tie between two triangles.
 constexpr std::size_t split_rays = 1024;
-constexpr std::uint32_t halo_slot = 15;  // beyond what a footprint's rays can make
+constexpr float settled_on_relief_m = 0.001f;  // of outer rays: see ReliefBatch
+// So near to the centre's plane a ray is on it: half as far as two parts are from each other where they are one echo.
+constexpr float one_plane_m = 0.025f;
+constexpr float one_normal = 0.996f;  // cosine of 5 degrees
 
 /// Where outer rays meet the plane that their centre ray met: t n'd = t0 n'd0, for they leave from one point.
 TARMAC_VECTOR_LOOP void meet_plane(std::size_t count, const double* __restrict t0_m, const float* __restrict relief_m,
@@ -47,10 +48,13 @@ TARMAC_VECTOR_LOOP void begin_mean(std::size_t count, float weight, const float*
   }
 }
 
-TARMAC_VECTOR_LOOP void add_to_mean(std::size_t count, float weight, const float* __restrict signal,
-                                    const double* __restrict t_m, double* __restrict sum, double* __restrict moment) {
+/// Of the rays that are on no open side.
+TARMAC_VECTOR_LOOP void add_to_mean(std::size_t count, float weight, int sides, const std::uint8_t* __restrict open,
+                                    const float* __restrict signal, const double* __restrict t_m,
+                                    double* __restrict sum, double* __restrict moment) {
   for (std::size_t i = 0; i < count; ++i) {
-    const double s = static_cast<double>(weight * signal[i]);
+    const float counts = (open[i] & sides) != 0 ? 0.0f : weight;
+    const double s = static_cast<double>(counts * signal[i]);
     sum[i] += s;
     moment[i] += s * t_m[i];
   }
@@ -65,6 +69,13 @@ void copy_ray(const Rays& from, std::size_t i, Rays& to, std::size_t j) {
   to.ox[j] = from.ox[i], to.oy[j] = from.oy[i], to.oz[j] = from.oz[i];
   to.dx[j] = from.dx[i], to.dy[j] = from.dy[i], to.dz[j] = from.dz[i];
   to.t_ns[j] = from.t_ns[i];
+}
+
+/// Of the macro surface that a ray met, from its origin.
+float plane_distance_m(const Hits& h, const Rays& rays, std::size_t j) {
+  const double facing = -(static_cast<double>(h.nx[j]) * rays.dx[j] + static_cast<double>(h.ny[j]) * rays.dy[j] +
+                          static_cast<double>(h.nz[j]) * rays.dz[j]);
+  return static_cast<float>((h.t_m[j] - static_cast<double>(h.relief_m[j])) * facing);
 }
 
 double half_angle_rad(const Profile& p) {
@@ -151,30 +162,14 @@ void BeamModel::echoes(const FiringTable& firing, const Aim& aim, const SweepSpa
                    [](const auto& a, const auto& b) { return a.firing < b.firing; });
 }
 
-/// Beams that have an open side, with what their centre rays met as their first parts.
+/// Beams that have an open side. Channel by channel: edges are long and mostly level, and rays that follow one look the
+/// same way.
 void BeamModel::find_split(std::size_t first, BeamWorkspace& w) const {
-  const std::size_t n = w.rays.size();
-  const CentreField& c = w.centre;
   w.split.clear();
-  w.panes.clear();
-  w.signal.resize(n);
-  reflectance_.signals(n, &c.material[first], &c.cos_incidence[first], w.signal.data());
-  // Channel by channel: edges are long and mostly level, and rays that follow one look the same way.
   for (std::size_t channel = 0; channel < channels_; ++channel)
-    for (std::size_t i = channel; i < n; i += channels_)
+    for (std::size_t i = channel; i < w.rays.size(); i += channels_)
       if (w.open[first + i] && !w.blocked[i]) w.split.push_back(static_cast<std::uint32_t>(i));
   w.split_beams += w.split.size();
-  if (w.parts.size() < w.split.size()) w.parts.resize(w.split.size());
-  for (std::size_t b = 0; b < w.split.size(); ++b) {
-    const std::size_t i = w.split[b], f = first + i;
-    w.parts[b].clear();
-    if (c.t_m[f] <= 0) continue;
-    const double macro_m = c.t_m[f] - static_cast<double>(c.relief_m[f]);
-    add_part(w, b,
-             {c.t_m[f], w.signal[i], c.cos_incidence[f], static_cast<float>(macro_m * static_cast<double>(c.facing[f])),
-              c.nx[f], c.ny[f], c.nz[f], c.instance[f], 0, ReturnKind::surface},
-             c.material[f], w.rays, i);
-  }
 }
 
 /// Lists of the beams that ask for more than a plane, and room for what is traced: beam after beam, for the rays of one
@@ -187,14 +182,30 @@ void BeamModel::prepare_outer(std::size_t first, BeamWorkspace& w) const {
     if (scene_->relief && c.t_m[f] > 0 && relief_material_[c.material[f]])
       w.rough.push_back(static_cast<std::uint32_t>(i));
   }
+  w.first_channel = channels_;
+  w.last_channel = 0;
+  for (std::size_t i = 0; i < w.rays.size(); i += channels_)
+    for (std::size_t channel = 0; channel < channels_; ++channel)
+      if (c.t_m[first + i + channel] > 0) {
+        w.first_channel = std::min(w.first_channel, channel);
+        w.last_channel = std::max(w.last_channel, channel + 1);
+      }
   std::uint32_t traced = 0;
   w.outer_end.clear();
   for (const std::uint32_t i : w.split) {
-    w.outer_end.push_back(traced);  // share_out() moves it on
+    w.outer_end.push_back(traced);  // queue_outer() moves it on
     for (const std::uint8_t sides : sides_) traced += (w.open[first + i] & sides) != 0;
   }
   w.outer.resize(traced);
   w.outer_ray.resize(traced);
+}
+
+/// Calls work(first beam, count) for the channels of every cycle that have met something: the sky needs no work.
+template <class Work>
+void BeamModel::for_met(const BeamWorkspace& w, const Work& work) const {
+  if (w.first_channel >= w.last_channel) return;
+  for (std::size_t i = 0; i < w.rays.size(); i += channels_)
+    work(i + w.first_channel, w.last_channel - w.first_channel);
 }
 
 /// The outer rays, one of the footprint after the other over all beams: on the plane that their centre met, with its
@@ -202,21 +213,30 @@ void BeamModel::prepare_outer(std::size_t first, BeamWorkspace& w) const {
 void BeamModel::place_outer(const Aim& aim, std::size_t first, const Vector3d& base, BeamWorkspace& w) const {
   const std::size_t n = w.rays.size(), around = footprint_.around();
   const CentreField& c = w.centre;
-  for (auto* v : {&w.moment, &w.sum, &w.t_m, &w.dx, &w.dy, &w.dz}) v->resize(n);
-  w.cosine.resize(n);
+  for (auto* v : {&w.moment, &w.sum, &w.dx, &w.dy, &w.dz}) v->resize(n);
+  w.t_m.resize(around * n);
+  w.cosine.resize(around * n);
+  w.signal.resize((around + 1) * n);
   prepare_outer(first, w);
+  reflectance_.signals(n, &c.material[first], &c.cos_incidence[first], w.signal.data());
   begin_mean(n, static_cast<float>(footprint_.weight()[0]), w.signal.data(), &c.t_m[first], w.sum.data(),
              w.moment.data());
   for (std::size_t k = 0; k < around; ++k) {
+    double* t_m = &w.t_m[k * n];
+    float *cosine = &w.cosine[k * n], *signal = &w.signal[(k + 1) * n];
     point_outer(aim, k, w);
-    meet_plane(n, &c.t_m[first], &c.relief_m[first], &c.nx[first], &c.ny[first], &c.nz[first], w.rays.dx.data(),
-               w.rays.dy.data(), w.rays.dz.data(), w.dx.data(), w.dy.data(), w.dz.data(), w.t_m.data(),
-               w.cosine.data());
+    for_met(w, [&](std::size_t i, std::size_t count) {
+      const std::size_t f = first + i;
+      meet_plane(count, &c.t_m[f], &c.relief_m[f], &c.nx[f], &c.ny[f], &c.nz[f], &w.rays.dx[i], &w.rays.dy[i],
+                 &w.rays.dz[i], &w.dx[i], &w.dy[i], &w.dz[i], t_m + i, cosine + i);
+    });
     if (!w.rough.empty()) meet_relief(k, first, base, w);
-    reflectance_.signals(n, &c.material[first], w.cosine.data(), w.signal.data());
-    add_to_mean(n, static_cast<float>(footprint_.weight()[k + 1]), w.signal.data(), w.t_m.data(), w.sum.data(),
-                w.moment.data());
-    share_out(k, first, w);
+    for_met(w, [&](std::size_t i, std::size_t count) {
+      reflectance_.signals(count, &c.material[first + i], cosine + i, signal + i);
+      add_to_mean(count, static_cast<float>(footprint_.weight()[k + 1]), sides_[k], &w.open[first + i], signal + i,
+                  t_m + i, &w.sum[i], &w.moment[i]);
+    });
+    queue_outer(k, first, w);
   }
 }
 
@@ -229,57 +249,53 @@ void BeamModel::point_outer(const Aim& aim, std::size_t k, BeamWorkspace& w) con
 
 void BeamModel::meet_relief(std::size_t k, std::size_t first, const Vector3d& base, BeamWorkspace& w) const {
   const CentreField& c = w.centre;
+  double* t_m = &w.t_m[k * w.rays.size()];
+  float* cosine = &w.cosine[k * w.rays.size()];
   w.on_relief.clear();
   w.relief.clear();
   w.relief.reserve(w.rays.size());
   for (const std::uint32_t i : w.rough) {
     const std::size_t f = first + i;
-    const double nd = -static_cast<double>(w.cosine[i]);
+    const double nd = -static_cast<double>(cosine[i]);
     if ((w.open[f] & sides_[k]) != 0 || !raycast::ReliefBatch::applies(nd)) continue;
-    w.relief.push_back(base.x() + w.rays.ox[i] + w.t_m[i] * w.dx[i], base.y() + w.rays.oy[i] + w.t_m[i] * w.dy[i],
+    w.relief.push_back(base.x() + w.rays.ox[i] + t_m[i] * w.dx[i], base.y() + w.rays.oy[i] + t_m[i] * w.dy[i],
                        static_cast<float>(w.dx[i]), static_cast<float>(w.dy[i]), c.nx[f], c.ny[f], c.nz[f],
                        static_cast<float>(nd));
     w.on_relief.push_back(i);
   }
-  w.relief.solve(*scene_->relief);
+  w.relief.solve(*scene_->relief, settled_on_relief_m);
   for (std::size_t r = 0; r < w.on_relief.size(); ++r) {
     const std::uint32_t i = w.on_relief[r];
-    w.t_m[i] += static_cast<double>(w.relief.s_m()[r]);
-    w.cosine[i] = w.relief.cos_incidence()[r];
+    t_m[i] += static_cast<double>(w.relief.s_m()[r]);
+    cosine[i] = w.relief.cos_incidence()[r];
   }
 }
 
-/// The k-th ray of the beams that are told apart: a part, or to be traced.
-void BeamModel::share_out(std::size_t k, std::size_t first, BeamWorkspace& w) const {
-  const CentreField& c = w.centre;
-  const auto number = static_cast<std::uint16_t>(k + 1);
-  const auto weight = static_cast<float>(footprint_.weight()[number]);
+/// The k-th rays of beams for which that is on an open side are to be traced.
+void BeamModel::queue_outer(std::size_t k, std::size_t first, BeamWorkspace& w) const {
   for (std::size_t b = 0; b < w.split.size(); ++b) {
-    const std::size_t i = w.split[b], f = first + i;
-    if ((w.open[f] & sides_[k]) != 0) {
-      const std::size_t j = w.outer_end[b]++;
-      copy_ray(w.rays, i, w.outer, j);
-      w.outer.dx[j] = w.dx[i], w.outer.dy[j] = w.dy[i], w.outer.dz[j] = w.dz[i];
-      w.outer_ray[j] = number;
-    } else if (c.t_m[f] > 0) {
-      const double macro_m = c.t_m[f] - static_cast<double>(c.relief_m[f]);
-      w.parts[b].push_back({w.t_m[i], weight * w.signal[i], w.cosine[i],
-                            static_cast<float>(macro_m * static_cast<double>(c.facing[f])), c.nx[f], c.ny[f], c.nz[f],
-                            c.instance[f], number, ReturnKind::surface});
-    }
+    const std::size_t i = w.split[b];
+    if ((w.open[first + i] & sides_[k]) == 0) continue;
+    const std::size_t j = w.outer_end[b]++;
+    copy_ray(w.rays, i, w.outer, j);
+    w.outer.dx[j] = w.dx[i], w.outer.dy[j] = w.dy[i], w.outer.dz[j] = w.dz[i];
+    w.outer_ray[j] = static_cast<std::uint16_t>(k + 1);
   }
 }
 
-/// Beams without an open side: one echo.
-void BeamModel::put_whole(std::size_t first, BeamWorkspace& w) const {
+/// One echo of the surface that the centre ray met.
+void BeamModel::put_mean(std::size_t f, double sum, double moment, BeamWorkspace& w) const {
   const CentreField& c = w.centre;
-  for (std::size_t i = 0; i < w.rays.size(); ++i) {
-    const std::size_t f = first + i;
-    if (w.open[f] || w.blocked[i] || c.t_m[f] <= 0) continue;
-    const bool mean = footprint_.around() > 0 && w.sum[i] > 0;
-    w.echoes.put(f, {mean ? w.moment[i] / w.sum[i] : c.t_m[f], static_cast<float>(w.sum[i]), c.cos_incidence[f],
-                     c.nx[f], c.ny[f], c.nz[f], c.instance[f], ReturnKind::surface});
-  }
+  const bool mean = footprint_.around() > 0 && sum > 0;
+  w.echoes.put(f, {mean ? moment / sum : c.t_m[f], static_cast<float>(sum), c.cos_incidence[f], c.nx[f], c.ny[f],
+                   c.nz[f], c.instance[f], ReturnKind::surface});
+}
+
+/// Beams without an open side.
+void BeamModel::put_whole(std::size_t first, BeamWorkspace& w) const {
+  for (std::size_t i = 0; i < w.rays.size(); ++i)
+    if (!w.open[first + i] && !w.blocked[i] && w.centre.t_m[first + i] > 0)
+      put_mean(first + i, w.sum[i], w.moment[i], w);
 }
 
 void BeamModel::add_part(BeamWorkspace& w, std::size_t beam, Part part, std::uint16_t material, const Rays& rays,
@@ -303,10 +319,14 @@ void BeamModel::add_part(BeamWorkspace& w, std::size_t beam, Part part, std::uin
   w.parts[beam].push_back(part);
 }
 
-/// Beams with an open side: their rays on that side traced, their parts told apart.
+/// Beams with an open side: their rays on that side traced, and where those met something else, their parts told apart.
 void BeamModel::add_split(const SweepTracer& tracer, std::size_t first, BeamWorkspace& w, double& trace_cpu_s) const {
-  if (w.split.empty()) return;
+  w.mixed.clear();
+  w.panes.clear();
   if (w.outer.size() > 0) trace_outer(tracer, w, trace_cpu_s);
+  for (std::size_t b = 0, begin = 0; b < w.split.size(); begin = w.outer_end[b++])
+    if (!put_if_one(w.split[b], begin, w.outer_end[b], first, w))
+      add_parts(w.split[b], begin, w.outer_end[b], first, w);
   if (w.panes.size() > 0) {
     w.found.clear();
     const double before_s = thread_cpu_s();
@@ -314,36 +334,90 @@ void BeamModel::add_split(const SweepTracer& tracer, std::size_t first, BeamWork
     trace_cpu_s += thread_cpu_s() - before_s;
     for (const PartOfBeam& found : w.found) w.parts[found.beam].push_back(found.part);
   }
-  for (std::size_t b = 0; b < w.split.size(); ++b) {
-    if (w.parts[b].empty()) continue;
-    tell_apart(w.parts[b], separation_m_, w.train);
-    put_strongest(first + w.split[b], w);
+  for (std::size_t m = 0; m < w.mixed.size(); ++m) {
+    if (w.parts[m].empty()) continue;
+    tell_apart(w.parts[m], separation_m_, w.train);
+    put_strongest(first + w.mixed[m], w);
   }
 }
 
 void BeamModel::trace_outer(const SweepTracer& tracer, BeamWorkspace& w, double& trace_cpu_s) const {
-  const Rays& outer = w.outer;
-  const std::size_t count = outer.size();
+  const std::size_t count = w.outer.size();
   pad_to_tiles(count, w.order);
   const double before_s = thread_cpu_s();
-  tracer.trace(outer, w.order, w.hits);
+  tracer.trace(w.outer, w.order, w.hits);
   trace_cpu_s += thread_cpu_s() - before_s;
   w.traced_rays += count;
   for (std::size_t j = 0; j < count; ++j)
     if (w.hits.instance[j] == Hits::nothing) w.hits.material[j] = 0;
-  w.signal.resize(std::max(w.signal.size(), count));
-  reflectance_.signals(count, w.hits.material.data(), w.hits.cos_incidence.data(), w.signal.data());
+  w.outer_signal.resize(count);
+  reflectance_.signals(count, w.hits.material.data(), w.hits.cos_incidence.data(), w.outer_signal.data());
+}
+
+/// Whether all rays of a beam met the plane that its centre ray met, or nothing as that did: then they are one echo, or
+/// none, as tell_apart() would have it. outer[begin, end) are those that were traced.
+bool BeamModel::put_if_one(std::size_t i, std::size_t begin, std::size_t end, std::size_t first,
+                           BeamWorkspace& w) const {
+  const std::size_t f = first + i;
+  const CentreField& c = w.centre;
   const Hits& h = w.hits;
-  for (std::size_t b = 0, j = 0; j < count; ++j) {
-    while (j == w.outer_end[b]) ++b;
+  if (pane_material_[c.material[f]]) return false;
+  if (c.t_m[f] <= 0)
+    return std::all_of(h.instance.data() + begin, h.instance.data() + end, [](auto id) { return id == Hits::nothing; });
+  const auto plane_m =
+      static_cast<float>((c.t_m[f] - static_cast<double>(c.relief_m[f])) * static_cast<double>(c.facing[f]));
+  double sum = w.sum[i], moment = w.moment[i];
+  for (std::size_t j = begin; j < end; ++j) {
+    const float along = c.nx[f] * h.nx[j] + c.ny[f] * h.ny[j] + c.nz[f] * h.nz[j];
+    const float off_m = plane_distance_m(h, w.outer, j) - plane_m;
+    if (h.instance[j] != c.instance[f] || !(std::abs(off_m) < one_plane_m) || along < one_normal ||
+        pane_material_[h.material[j]])
+      return false;
+    const double s = footprint_.weight()[w.outer_ray[j]] * static_cast<double>(w.outer_signal[j]);
+    sum += s;
+    moment += s * h.t_m[j];
+  }
+  put_mean(f, sum, moment, w);
+  return true;
+}
+
+/// A beam's parts: of the centre ray, of those on its plane, of those that were traced.
+void BeamModel::add_parts(std::size_t i, std::size_t begin, std::size_t end, std::size_t first,
+                          BeamWorkspace& w) const {
+  const std::size_t f = first + i, n = w.rays.size(), beam = w.mixed.size();
+  const CentreField& c = w.centre;
+  w.mixed.push_back(static_cast<std::uint32_t>(i));
+  if (w.parts.size() <= beam) w.parts.emplace_back();
+  w.parts[beam].clear();
+  if (c.t_m[f] > 0) {
+    const double macro_m = c.t_m[f] - static_cast<double>(c.relief_m[f]);
+    Part part{c.t_m[f],
+              w.signal[i],
+              c.cos_incidence[f],
+              static_cast<float>(macro_m * static_cast<double>(c.facing[f])),
+              c.nx[f],
+              c.ny[f],
+              c.nz[f],
+              c.instance[f],
+              0,
+              ReturnKind::surface};
+    add_part(w, beam, part, c.material[f], w.rays, i);
+    for (std::size_t k = 0; k < footprint_.around(); ++k) {
+      if ((w.open[f] & sides_[k]) != 0) continue;
+      part.ray = static_cast<std::uint16_t>(k + 1);
+      part.t_m = w.t_m[k * n + i];
+      part.cos_incidence = w.cosine[k * n + i];
+      part.signal = w.signal[(k + 1) * n + i] * static_cast<float>(footprint_.weight()[k + 1]);
+      w.parts[beam].push_back(part);
+    }
+  }
+  const Hits& h = w.hits;
+  for (std::size_t j = begin; j < end; ++j) {
     if (h.instance[j] == Hits::nothing) continue;
-    const double facing = -(static_cast<double>(h.nx[j]) * outer.dx[j] + static_cast<double>(h.ny[j]) * outer.dy[j] +
-                            static_cast<double>(h.nz[j]) * outer.dz[j]);
-    add_part(w, b,
-             {h.t_m[j], w.signal[j], h.cos_incidence[j],
-              static_cast<float>((h.t_m[j] - static_cast<double>(h.relief_m[j])) * facing), h.nx[j], h.ny[j], h.nz[j],
-              h.instance[j], w.outer_ray[j], ReturnKind::surface},
-             h.material[j], outer, j);
+    add_part(w, beam,
+             {h.t_m[j], w.outer_signal[j], h.cos_incidence[j], plane_distance_m(h, w.outer, j), h.nx[j], h.ny[j],
+              h.nz[j], h.instance[j], w.outer_ray[j], ReturnKind::surface},
+             h.material[j], w.outer, j);
   }
 }
 
@@ -380,57 +454,6 @@ void BeamModel::put_strongest(std::size_t firing, BeamWorkspace& w) const {
   w.echoes.put(firing, w.train.front());
   for (std::size_t k = 1; k < w.train.size(); ++k)
     w.echoes.others.push_back({static_cast<std::uint32_t>(firing), static_cast<std::uint32_t>(k), w.train[k]});
-}
-
-/// Very bright targets near by reach the beams beside theirs. A beam keeps what it has as another echo.
-void BeamModel::add_halos(BeamWorkspace& w) const {
-  const auto channels = static_cast<std::int64_t>(beside_.size()),
-             cycles = static_cast<std::int64_t>(w.echoes.size()) / channels;
-  std::vector<EchoField::Other> halos;
-  for (std::size_t f = 0; f < w.echoes.size(); ++f) {
-    const Echo source = w.echoes.at(f);
-    if (source.t_m <= 0 || source.t_m > halo_within_m || source.signal < halo_from_signal ||
-        source.kind == ReturnKind::self)
-      continue;
-    const std::int64_t cycle = static_cast<std::int64_t>(f) / channels;
-    for (const Beside& beside : beside_[f % beside_.size()]) {
-      const std::int64_t other = cycle + beside.cycles;
-      if (other < 0 || other >= cycles) continue;
-      Echo halo = source;
-      halo.signal *= beside.share;
-      halo.kind = ReturnKind::retro_halo;
-      halos.push_back({static_cast<std::uint32_t>(other * channels + beside.channel), 0, halo});
-    }
-  }
-  merge_halos(halos, w);
-}
-
-/// Of several halos the strongest; none where the beam's own echo is so near that the two are one, or where the beam
-/// ends on the own vehicle.
-void BeamModel::merge_halos(std::vector<EchoField::Other>& halos, BeamWorkspace& w) const {
-  std::stable_sort(halos.begin(), halos.end(), [](const auto& a, const auto& b) {
-    return a.firing != b.firing ? a.firing < b.firing : a.echo.signal > b.echo.signal;
-  });
-  EchoField& e = w.echoes;
-  for (std::size_t k = 0; k < halos.size(); ++k) {
-    EchoField::Other& halo = halos[k];
-    const std::uint32_t f = halo.firing;
-    if (k > 0 && halos[k - 1].firing == f) continue;
-    if (e.t_m[f] <= 0) {
-      e.put(f, halo.echo);
-      continue;
-    }
-    if (std::abs(e.t_m[f] - halo.echo.t_m) <= separation_m_ || e.kind[f] == ReturnKind::self) continue;
-    const auto strength = [&](double signal, double t_m) { return detection_.snr(signal, t_m + range_offset_m_); };
-    halo.slot = halo_slot;
-    if (strength(static_cast<double>(halo.echo.signal), halo.echo.t_m) >
-        strength(static_cast<double>(e.signal[f]), e.t_m[f])) {
-      const Echo own = e.at(f);
-      e.put(f, halo.echo);
-      halo.echo = own;
-    }
-    e.others.push_back(halo);
-  }
 }
 
 }  // namespace tarmac::sim::lidar

@@ -34,13 +34,17 @@ struct BeamWorkspace {
   AimedCycles aimed, body_aimed;
   raycast::Rays rays, body_rays, outer;
   raycast::Hits hits;
-  std::vector<double> dx, dy, dz;  // of one of the footprint's rays, over all beams
-  std::vector<double> t_m, moment, sum;
-  std::vector<float> cosine, signal;
-  std::vector<std::uint32_t> rough, on_relief;  // beams that met relief, and those whose rays are put on it
-  std::vector<std::uint32_t> split;             // beams that are told apart
-  std::vector<std::uint32_t> outer_end;         // of each of them: where its rays that are traced end, in `outer`
-  std::vector<std::uint16_t> outer_ray;         // their numbers in the footprint
+  std::vector<double> dx, dy, dz;     // of one of the footprint's rays, over all beams
+  std::vector<double> t_m;            // one after the other
+  std::vector<float> cosine, signal;  // so too; the centre's first
+  std::vector<double> moment, sum;    // of a beam's rays that are not traced
+  std::vector<float> outer_signal;
+  std::size_t first_channel = 0, last_channel = 0;  // that met something; the end is one beyond
+  std::vector<std::uint32_t> rough, on_relief;      // beams that met relief, and those whose rays are put on it
+  std::vector<std::uint32_t> split;                 // beams of which rays are traced
+  std::vector<std::uint32_t> mixed;                 // those of them whose parts are told apart
+  std::vector<std::uint32_t> outer_end;             // of each of them: where its rays that are traced end, in `outer`
+  std::vector<std::uint16_t> outer_ray;             // their numbers in the footprint
   std::vector<std::uint32_t> order;
   raycast::ReliefBatch relief;
   PaneRays panes;
@@ -62,14 +66,19 @@ class BeamModel {
 
  private:
   void prepare_outer(std::size_t first, BeamWorkspace& w) const;
+  template <class Work>
+  void for_met(const BeamWorkspace& w, const Work& work) const;
   void find_split(std::size_t first, BeamWorkspace& w) const;
   void place_outer(const Aim& aim, std::size_t first, const Eigen::Vector3d& base, BeamWorkspace& w) const;
   void point_outer(const Aim& aim, std::size_t k, BeamWorkspace& w) const;
   void meet_relief(std::size_t k, std::size_t first, const Eigen::Vector3d& base, BeamWorkspace& w) const;
-  void share_out(std::size_t k, std::size_t first, BeamWorkspace& w) const;
+  void queue_outer(std::size_t k, std::size_t first, BeamWorkspace& w) const;
   void put_whole(std::size_t first, BeamWorkspace& w) const;
   void add_split(const raycast::SweepTracer& tracer, std::size_t first, BeamWorkspace& w, double& trace_cpu_s) const;
   void trace_outer(const raycast::SweepTracer& tracer, BeamWorkspace& w, double& trace_cpu_s) const;
+  bool put_if_one(std::size_t i, std::size_t begin, std::size_t end, std::size_t first, BeamWorkspace& w) const;
+  void add_parts(std::size_t i, std::size_t begin, std::size_t end, std::size_t first, BeamWorkspace& w) const;
+  void put_mean(std::size_t firing, double sum, double moment, BeamWorkspace& w) const;
   /// A hit of rays[index]; `part` has the signal of a whole beam.
   void add_part(BeamWorkspace& w, std::size_t beam, Part part, std::uint16_t material, const raycast::Rays& rays,
                 std::size_t index) const;

@@ -40,7 +40,7 @@ TARMAC_VECTOR_LOOP void bracket(std::size_t count, const Iteration it) {
 }
 
 // The Newton step where it lies between the known sides, else a point that brings them together.
-TARMAC_VECTOR_LOOP void step(std::size_t count, const Iteration it) {
+TARMAC_VECTOR_LOOP void step(std::size_t count, float settled_m, const Iteration it) {
 #pragma GCC ivdep
   for (std::size_t k = 0; k < count; ++k) {
     const float s = it.s[k], nd = it.nd[k], above = it.above[k], below = it.below[k], retreat = it.retreat[k];
@@ -55,7 +55,10 @@ TARMAC_VECTOR_LOOP void step(std::size_t count, const Iteration it) {
     const float next_low = wanted > low ? wanted : fallback, next = wanted < below ? next_low : fallback;
     const float one_side = wanted < below ? retreat : farther;
     it.retreat[k] = two_sides ? retreat : one_side;
+    const float moved = next - s, way = moved < 0 ? -moved : moved;
+    const bool newton = (next == wanted) & (own < 0.25f * nd);
     it.s[k] = it.done[k] != 0 ? s : next;
+    it.done[k] = (it.done[k] != 0) | (newton & (way < settled_m)) ? 1u : 0u;
   }
 }
 
@@ -127,7 +130,7 @@ std::size_t ReliefBatch::compact(std::size_t first, std::size_t count, std::size
   return kept;
 }
 
-void ReliefBatch::solve_block(const scenes::Relief& relief, std::size_t first, std::size_t count) {
+void ReliefBatch::solve_block(const scenes::Relief& relief, float settled_m, std::size_t first, std::size_t count) {
   std::copy_n(&px_m_[first], count, ax_m_.begin());
   std::copy_n(&py_m_[first], count, ay_m_.begin());
   std::copy_n(&dx_[first], count, adx_.begin());
@@ -146,14 +149,15 @@ void ReliefBatch::solve_block(const scenes::Relief& relief, std::size_t first, s
     advance(active, ax_m_.data(), ay_m_.data(), adx_.data(), ady_.data(), s_.data(), x_m_.data(), y_m_.data());
     relief.heights_m(active, x_m_.data(), y_m_.data(), height_m_.data(), slope_x_.data(), slope_y_.data());
     bracket(active, it);
-    step(active, it);
+    step(active, settled_m, it);
     // Hardly a ray is done after the first look; it stays where it is until the second.
     if (i > 0) active = compact(first, count, active);
   }
 }
 
-void ReliefBatch::solve(const scenes::Relief& relief) {
-  for (std::size_t first = 0; first < size_; first += block) solve_block(relief, first, std::min(block, size_ - first));
+void ReliefBatch::solve(const scenes::Relief& relief, float settled_m) {
+  for (std::size_t first = 0; first < size_; first += block)
+    solve_block(relief, settled_m, first, std::min(block, size_ - first));
   shade(size_, dx_.data(), dy_.data(), nx_.data(), ny_.data(), nz_.data(), nd_.data(), slope_x_out_.data(),
         slope_y_out_.data(), cosine_.data());
 }

@@ -88,7 +88,7 @@ BenchRows bench_beams(const Console& console) {
   const sim::LidarOptions& lidar = rig.lidars[0];
   const auto tracer = std::make_shared<const sim::raycast::Tracer>(
       input.scene, sim::raycast::TracerSettings{.threads = 1, .fast = true});
-  const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
+  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 2u);
   BenchRows rows;
   for (const int rays : {1, 7}) {
     sim::lidar::Requests requests;
