@@ -3,6 +3,9 @@
 #include <vtkMapper.h>
 #include <vtkProperty.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "reports/stills_cameras.h"
 #include "reports/stills_state.h"
 
@@ -47,7 +50,9 @@ Image Stills::view(const std::vector<Eigen::Vector3d>& points, const Eigen::Vect
 Image Stills::seen_from(const EyeView& view, int width_px, int height_px) {
   check(view);
   const vtkSmartPointer<vtkRenderer> renderer = state_->new_renderer(/*night=*/false, /*with_ceilings=*/true);
-  look_from_eye(renderer, view, state_->distance_m(view.eye_m));
+  // The far ground is no part of the scene.
+  const double above_ground_m = std::abs(view.eye_m.z() - state_->ground_z_m);
+  look_from_eye(renderer, view, std::min(state_->distance_m(view.eye_m), above_ground_m));
   return state_->draw(renderer, width_px, height_px);
 }
 

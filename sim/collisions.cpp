@@ -31,7 +31,6 @@ constexpr double touch_m = 0.02;
 constexpr double lift_m = 0.15;
 constexpr double interval_s = 0.5;
 constexpr double difference_s = 1e-3;
-constexpr double slack = 0.3, closely_m = 0.3;
 
 using Triangles = fcl::BVHModel<fcl::OBBRSSd>;
 using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
@@ -233,8 +232,8 @@ struct Nearest {
   std::size_t of_second = 0;                                    ///< triangle of the second body
 };
 
-/// Two bodies, the first of them lifted. With a `share` the distance may be larger than the true one by this share.
-Nearest nearest(const Body& a, const Body& b, Time t, double lift_a_m, double share = 0) {
+/// Two bodies, the first of them lifted.
+Nearest nearest(const Body& a, const Body& b, Time t, double lift_a_m) {
   Nearest least;
   SE3 T_a = a.pose(t);
   T_a.translation().z() += lift_a_m;
@@ -243,7 +242,6 @@ Nearest nearest(const Body& a, const Body& b, Time t, double lift_a_m, double sh
     for (const Piece& piece_b : b.pieces()) {
       fcl::DistanceRequestd request;
       request.enable_nearest_points = false;
-      request.rel_err = share;
       fcl::DistanceResultd result;
       // Not by fcl::CollisionObject: each would go through all vertices for its box.
       fcl::distance(piece_a.geometry.get(), fcl::Transform3d(T_a * piece_a.T_body_piece), piece_b.geometry.get(),
@@ -285,9 +283,7 @@ std::optional<Time> meeting(const Body& a, const Body& b, const Interval& when, 
         (a.pose(t).translation() - b.pose(t).translation()).norm() - a.radius_m - b.radius_m - lift_a_m;
     double free_m = between_m;
     if (free_m < 1) {
-      // Long walls beside make the exact distance dear; it matters only where it is small.
-      free_m = nearest(a, b, t, lift_a_m, slack).distance_m / (1 + slack);
-      if (free_m < closely_m) free_m = nearest(a, b, t, lift_a_m).distance_m;
+      free_m = nearest(a, b, t, lift_a_m).distance_m;
       if (free_m < touch_m) return t;
     }
     const double left_s = core::to_s(when.end - t);
@@ -392,14 +388,16 @@ Scenery scenery_near(const scenes::Scene& scene, const Swept& swept) {
   return scenery;
 }
 
-/// The solid that an actor begins in; null: none.
-const scenes::Mesh* standing_around(const scenes::Scene& scene, const Body& actor, Time t) {
+/// The solid that an actor begins in; null: none. `bounds` are those of the scene's meshes.
+const scenes::Mesh* standing_around(const scenes::Scene& scene, const std::vector<Eigen::AlignedBox3f>& bounds,
+                                    const Body& actor, Time t) {
   for (const Piece& piece : actor.pieces()) {
     const Vector3d p_world = actor.pose(t) * piece.T_body_piece * point_of(piece) + Vector3d(0, 0, lift_m);
     for (const scenes::Instance& instance : scene.instances) {
       if (instance.actor >= 0 || is_free(instance.label)) continue;
       const scenes::Mesh& mesh = scene.meshes[instance.mesh];
-      if (scenes::is_inside(mesh, instance.T_parent_mesh.inverse() * p_world)) return &mesh;
+      const Vector3d p = instance.T_parent_mesh.inverse() * p_world;
+      if (bounds[instance.mesh].contains(p.cast<float>()) && scenes::is_inside(mesh, p)) return &mesh;
     }
   }
   return nullptr;
@@ -421,6 +419,8 @@ void check_against_what_stands(const scenes::Scene& scene, const std::vector<Bod
   const Scenery scenery = scenery_near(scene, swept);
   if (!scenery.geometry) return;
   const std::vector<Piece> pieces{Piece{.geometry = scenery.geometry}};
+  std::vector<Eigen::AlignedBox3f> bounds;
+  for (const scenes::Mesh& mesh : scene.meshes) bounds.push_back(scenes::bounds_of(mesh));
   const auto stays = [](Time) { return SE3(SE3::Identity()); };
   // Its radius holds everything: how near an actor is, only the triangles tell.
   const Body standing{"what stands there",
@@ -430,7 +430,7 @@ void check_against_what_stands(const scenes::Scene& scene, const std::vector<Bod
                       [](Time, Time) { return 0.0; },
                       [&]() -> const std::vector<Piece>& { return pieces; }};
   for (const Body& actor : actors) {
-    if (const scenes::Mesh* around = standing_around(scene, actor, Time{}))
+    if (const scenes::Mesh* around = standing_around(scene, bounds, actor, Time{}))
       refuse(actor, "what stands there (" + around->name + ")", Time{}, scenario_name);
     for (std::int64_t k = 0; k < count; ++k) {
       const Interval when = interval(k);

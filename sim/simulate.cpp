@@ -229,11 +229,15 @@ namespace {
 
 /// What must not be run into: the rig's body where it has a size, what the motion carries where not.
 truth::BodyBox ego_box(const lidar::BodyOptions& body, const truth::BodyBox& of_motion) {
-  if (body.sized)
-    return {.length_m = body.length_m,
-            .width_m = body.width_m,
-            .rear_overhang_m = body.rear_overhang_m,
-            .height_m = body.height_m};
+  if (body.sized) {
+    // A size says how high something stands above its own underside; where that is, the motion knows.
+    truth::BodyBox box = of_motion;
+    box.length_m = body.length_m;
+    box.width_m = body.width_m;
+    box.rear_overhang_m = body.rear_overhang_m;
+    box.height_m = body.height_m - box.below_m;
+    return box;
+  }
   if (!body.any()) return of_motion;
   Eigen::Vector3f low = Eigen::Vector3f::Zero(), high = low;
   for (const Eigen::Vector3f& p : lidar::body_mesh(body).vertices) {

@@ -20,10 +20,15 @@ double winding_number(const Mesh& mesh, const Vector3d& p) {
   return half_angles / (2 * std::numbers::pi);
 }
 
-bool is_inside(const Mesh& mesh, const Vector3d& p) {
+Eigen::AlignedBox3f bounds_of(const Mesh& mesh) {
   Eigen::AlignedBox3f bounds;
   for (const Eigen::Vector3f& v : mesh.vertices) bounds.extend(v);
-  return bounds.contains(p.cast<float>()) && winding_number(mesh, p) > 0.5;
+  return bounds;
+}
+
+bool is_inside(const Mesh& mesh, const Vector3d& p) {
+  // Less than once, by whatever little: the surface has an opening, and may be a building of one skin.
+  return bounds_of(mesh).contains(p.cast<float>()) && winding_number(mesh, p) > 0.999;
 }
 
 }  // namespace tarmac::scenes

@@ -131,6 +131,9 @@ Echo EchoField::at(std::size_t i) const {
 
 void Neighbours::set(const std::vector<Above>& above) {
   above_ = above;
+  nothing_below_.assign(above.size(), 1);
+  for (const Above& a : above)
+    if (a.channel >= 0) nothing_below_[static_cast<std::size_t>(a.channel)] = 0;
 }
 
 void Neighbours::look(const CentreField& field, const std::vector<std::uint8_t>& open_material,
@@ -155,10 +158,16 @@ void Neighbours::look_up(const CentreField& field, std::vector<std::uint8_t>& op
              cycles = static_cast<std::int64_t>(field.size()) / channels;
   for (std::int64_t k = 0; k < cycles; ++k)
     for (std::int64_t c = 0; c < channels; ++c) {
-      const Above& above = above_[static_cast<std::size_t>(c)];
-      if (above.channel < 0) continue;
-      const std::int64_t other = k + above.cycles;
       const auto i = static_cast<std::size_t>(k * channels + c);
+      if (nothing_below_[static_cast<std::size_t>(c)]) open[i] |= side::below;
+      const Above& above = above_[static_cast<std::size_t>(c)];
+      if (above.channel < 0) {
+        open[i] |= side::above;
+        continue;
+      }
+      const std::int64_t other = k + above.cycles;
+      if (const std::int64_t under = k - above.cycles; under < 0 || under >= cycles)
+        open[static_cast<std::size_t>(k * channels + above.channel)] |= side::below;
       const bool there = other >= 0 && other < cycles;
       const auto j = static_cast<std::size_t>(there ? other * channels + above.channel : 0);
       if (there && ((s.t_m[i] <= 0 && s.t_m[j] <= 0) || !differ(s, i, j))) continue;

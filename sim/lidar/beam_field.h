@@ -51,12 +51,13 @@ class Neighbours {
   /// `above` by channel.
   void set(const std::vector<Above>& above);
   /// open[i]: sides (bits of side::) on which firing i and its neighbour did not meet one plane, or both nothing. All
-  /// of them on a material that `open_material` marks, and those beyond the sweep.
+  /// of them on a material that `open_material` marks, and those on which the sweep has no neighbour.
   void look(const CentreField& field, const std::vector<std::uint8_t>& open_material,
             std::vector<std::uint8_t>& open) const;
 
  private:
   void look_up(const CentreField& field, std::vector<std::uint8_t>& open) const;
+  std::vector<std::uint8_t> nothing_below_;  ///< by channel
   std::vector<Above> above_;
 };
 

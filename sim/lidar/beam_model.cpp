@@ -169,7 +169,6 @@ void BeamModel::find_split(std::size_t first, BeamWorkspace& w) const {
   for (std::size_t channel = 0; channel < channels_; ++channel)
     for (std::size_t i = channel; i < w.rays.size(); i += channels_)
       if (w.open[first + i] && !w.blocked[i]) w.split.push_back(static_cast<std::uint32_t>(i));
-  w.split_beams += w.split.size();
 }
 
 /// Lists of the beams that ask for more than a plane, and room for what is traced: beam after beam, for the rays of one
@@ -195,6 +194,7 @@ void BeamModel::prepare_outer(std::size_t first, BeamWorkspace& w) const {
   for (const std::uint32_t i : w.split) {
     w.outer_end.push_back(traced);  // queue_outer() moves it on
     for (const std::uint8_t sides : sides_) traced += (w.open[first + i] & sides) != 0;
+    w.split_beams += traced != w.outer_end.back();
   }
   w.outer.resize(traced);
   w.outer_ray.resize(traced);

@@ -121,7 +121,9 @@ void SweepTracer::State::cast_shades(const Rays& rays, Shades& shades) {
   shades.clear();
   if (parts.empty() || rays.size() == 0) return;
   const BatchBounds batch = bounds_of(rays, base);
-  if (!whereabouts.holds(batch)) whereabouts = whereabouts_of(parts, batch.centre_m, span_ns);
+  // Rays that begin metres apart, behind panes, are never near one place: they must not drop what the others share.
+  if (!whereabouts.holds(batch) && batch.radius_m <= Whereabouts::near_m)
+    whereabouts = whereabouts_of(parts, batch.centre_m, span_ns);
   raycast::cast_shades(parts, whereabouts, batch, static_cast<double>(reach_m), shades);
 }
 
