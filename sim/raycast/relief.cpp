@@ -150,8 +150,8 @@ void ReliefBatch::solve_block(const scenes::Relief& relief, float settled_m, std
     relief.heights_m(active, x_m_.data(), y_m_.data(), height_m_.data(), slope_x_.data(), slope_y_.data());
     bracket(active, it);
     step(active, settled_m, it);
-    // Hardly a ray is done after the first look; it stays where it is until the second.
-    if (i > 0) active = compact(first, count, active);
+    // Unless a small step settles it, hardly a ray is done after the first look: it stays where it is until the second.
+    if (i > 0 || settled_m > 0) active = compact(first, count, active);
   }
 }
 
