@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "scenes/paths/hermite7.h"
 #include "scenes/paths/quadrature.h"
 #include "sim/truth/block_table.h"
 
@@ -15,14 +16,11 @@ using scenes::Gauss3;
 
 namespace {
 
-/// Extended, since the polynomials' higher coefficients are small differences of the states at two nodes.
-using Real = long double;
+using Real = scenes::Extended;
 constexpr Real h = 1e-3L;
 
 /// Value and three derivatives at a node.
-struct NodeState {
-  Real q = 0, d1 = 0, d2 = 0, d3 = 0;
-};
+using NodeState = scenes::ExtendedJet;
 
 class Propagator {
  public:
@@ -43,8 +41,8 @@ class Propagator {
 
   NodeState next(const NodeState& from, const std::array<Real, 3>& F_inside, const Jet& F_end) const {
     const Real g = impulse(h), g_rate = impulse_rate(h);
-    Real q = from.q * (g_rate + 2 * zeta_ * w_ * g) + from.d1 * g;
-    Real d1 = -from.q * w_ * w_ * g + from.d1 * g_rate;
+    Real q = from.f * (g_rate + 2 * zeta_ * w_ * g) + from.d1 * g;
+    Real d1 = -from.f * w_ * w_ * g + from.d1 * g_rate;
     for (int j = 0; j < 3; ++j) {
       q += to_value_[j] * F_inside[j];
       d1 += to_rate_[j] * F_inside[j];
@@ -62,29 +60,16 @@ class Propagator {
   std::array<Real, 3> to_value_{}, to_rate_{};
 };
 
-/// The polynomial of degree 7 on [0, 1] with these values and derivatives at both ends.
-std::array<double, 8> hermite7(const NodeState& a, const NodeState& b) {
-  const Real c0 = a.q, c1 = h * a.d1, c2 = h * h * a.d2 / 2, c3 = h * h * h * a.d3 / 6;
-  const Real e0 = b.q - (c0 + c1 + c2 + c3), e1 = h * b.d1 - (c1 + 2 * c2 + 3 * c3);
-  const Real e2 = h * h * b.d2 - (2 * c2 + 6 * c3), e3 = h * h * h * b.d3 - 6 * c3;
-  const Real c4 = 35 * e0 - 15 * e1 + 2.5L * e2 - e3 / 6, c5 = -84 * e0 + 39 * e1 - 7 * e2 + e3 / 2;
-  const Real c6 = 70 * e0 - 34 * e1 + 6.5L * e2 - e3 / 2, c7 = -20 * e0 + 10 * e1 - 2 * e2 + e3 / 6;
-  const auto d = [](Real x) { return static_cast<double>(x); };
-  return {d(c0), d(c1), d(c2), d(c3), d(c4), d(c5), d(c6), d(c7)};
-}
-
 using States = std::array<NodeState, 3>;
 
 constexpr std::size_t block_nodes = 256;
 /// 66 s or 13 MB. Sweeps, IMU and checks each go through the drive once: most drives are solved once for all of them.
 constexpr std::size_t blocks_in_memory = 256;
 
-/// Coefficients of x^k, x in [0, 1] over one interval.
-using Polynomial = std::array<double, 8>;
-using Block = std::vector<std::array<Polynomial, 3>>;
+using Block = std::vector<std::array<scenes::Hermite7, 3>>;
 
 Jet jet_of(const NodeState& s) {
-  return {static_cast<double>(s.q), static_cast<double>(s.d1), static_cast<double>(s.d2), static_cast<double>(s.d3)};
+  return {static_cast<double>(s.f), static_cast<double>(s.d1), static_cast<double>(s.d2), static_cast<double>(s.d3)};
 }
 
 }  // namespace
@@ -113,20 +98,9 @@ class Suspension::Solution {
     const auto wanted = static_cast<std::size_t>(std::max(0.0, t_s / node_spacing_s));
     const std::size_t k = std::min(wanted, count_ - 1);
     const double x = t_s / node_spacing_s - static_cast<double>(k);
-    constexpr double r = 1 / node_spacing_s;
     const std::shared_ptr<const Block> block = blocks_.get(k / block_nodes);
     std::array<Jet, 3> result;
-    for (int m = 0; m < 3; ++m) {
-      const Polynomial& c = (*block)[k % block_nodes][m];
-      double f = 0, d1 = 0, d2 = 0, d3 = 0;  // d2 and d3 are collected divided by 2 and 6
-      for (int i = 7; i >= 0; --i) {
-        d3 = d3 * x + d2;
-        d2 = d2 * x + d1;
-        d1 = d1 * x + f;
-        f = f * x + c[i];
-      }
-      result[m] = {f, d1 * r, 2 * d2 * r * r, 6 * d3 * r * r * r};
-    }
+    for (int m = 0; m < 3; ++m) result[m] = scenes::evaluate((*block)[k % block_nodes][m], x, 1 / node_spacing_s);
     return result;
   }
 
@@ -152,7 +126,7 @@ class Suspension::Solution {
     for (std::size_t k = first; k < end; ++k) {
       if (visit) visit(static_cast<double>(k) * node_spacing_s, {jet_of(state[0]), jet_of(state[1]), jet_of(state[2])});
       const States after = next(k, state);
-      for (int m = 0; m < 3; ++m) result[k - first][m] = hermite7(state[m], after[m]);
+      for (int m = 0; m < 3; ++m) result[k - first][m] = scenes::hermite7(state[m], after[m], h);
       state = after;
     }
     return result;

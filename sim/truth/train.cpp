@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "scenes/paths/hermite7.h"
 #include "scenes/paths/quadrature.h"
 #include "sim/truth/block_table.h"
 
@@ -29,26 +30,13 @@ struct Gauss6 {
 };
 const Gauss6 gauss;
 
-/// The polynomial of degree 7 on [0, 1] with these values and derivatives by s at both ends.
-std::array<double, 8> hermite(const Jet& a, const Jet& b, double h) {
-  using Real = long double;
-  const Real c0 = a.f, c1 = h * a.d1, c2 = h * h * a.d2 / 2, c3 = h * h * h * a.d3 / 6;
-  const Real e0 = b.f - (c0 + c1 + c2 + c3), e1 = h * b.d1 - (c1 + 2 * c2 + 3 * c3);
-  const Real e2 = h * h * b.d2 - (2 * c2 + 6 * c3), e3 = h * h * h * b.d3 - 6 * c3;
-  const Real c4 = 35 * e0 - 15 * e1 + 2.5L * e2 - e3 / 6, c5 = -84 * e0 + 39 * e1 - 7 * e2 + e3 / 2;
-  const Real c6 = 70 * e0 - 34 * e1 + 6.5L * e2 - e3 / 2, c7 = -20 * e0 + 10 * e1 - 2 * e2 + e3 / 6;
-  const auto d = [](Real x) { return static_cast<double>(x); };
-  return {d(c0), d(c1), d(c2), d(c3), d(c4), d(c5), d(c6), d(c7)};
-}
-
 using Angles = std::array<double, Train::max_links>;
 
 constexpr std::size_t block_nodes = 128;
 /// 164 m: a good while at any speed that a train drives at.
 constexpr std::size_t blocks_in_memory = 64;
 
-using Polynomial = std::array<double, 8>;
-using Block = std::vector<std::array<Polynomial, Train::max_links>>;
+using Block = std::vector<std::array<scenes::Hermite7, Train::max_links>>;
 
 }  // namespace
 
@@ -85,20 +73,10 @@ class Train::Solution {
     const auto wanted = static_cast<std::size_t>(std::max(0.0, s_m / node_spacing_m));
     const std::size_t k = std::min(wanted, count_ - 1);
     const double x = s_m / node_spacing_m - static_cast<double>(k);
-    constexpr double r = 1 / node_spacing_m;
     const std::shared_ptr<const Block> block = blocks_.get(k / block_nodes);
     std::array<Jet, max_links> result{};
-    for (std::size_t link = 0; link < links_.size(); ++link) {
-      const Polynomial& c = (*block)[k % block_nodes][link];
-      double f = 0, d1 = 0, d2 = 0, d3 = 0;  // d2 and d3 are collected divided by 2 and 6
-      for (int i = 7; i >= 0; --i) {
-        d3 = d3 * x + d2;
-        d2 = d2 * x + d1;
-        d1 = d1 * x + f;
-        f = f * x + c[static_cast<std::size_t>(i)];
-      }
-      result[link] = {f, d1 * r, 2 * d2 * r * r, 6 * d3 * r * r * r};
-    }
+    for (std::size_t link = 0; link < links_.size(); ++link)
+      result[link] = scenes::evaluate((*block)[k % block_nodes][link], x, 1 / node_spacing_m);
     return result;
   }
 
@@ -194,7 +172,8 @@ class Train::Solution {
       theta = next(k, theta);
       const std::array<Jet, max_links> after = node(k + 1, theta);
       for (std::size_t i = 0; i < links_.size(); ++i)
-        result[k - first][i] = hermite(before[i], after[i], node_spacing_m);
+        result[k - first][i] =
+            scenes::hermite7(scenes::extended(before[i]), scenes::extended(after[i]), node_spacing_m);
       before = after;
     }
     return result;
