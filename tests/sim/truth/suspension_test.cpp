@@ -171,5 +171,21 @@ TEST(BlockTable, KeepsWhatItHasRoomForAndMakesTheRestAgain) {
   EXPECT_EQ(made.size(), 6u);
 }
 
+TEST(BlockTable, HasMoreRoomForWhoGoesThroughItAgainAndAgain) {
+  std::size_t made = 0;
+  const BlockTable<std::size_t> table(4, [&](std::size_t index) {
+    ++made;
+    return 10 * index;
+  });
+  const auto pass = [&] {
+    const std::size_t before = made;
+    for (std::size_t index = 0; index < 16; ++index) EXPECT_EQ(*table.get(index), 10 * index);
+    return made - before;
+  };
+  for (int k = 0; k < 6; ++k) EXPECT_EQ(pass(), 16u) << "a few times cost no memory";
+  for (int k = 0; k < 24; ++k) pass();
+  EXPECT_EQ(pass(), 0u);
+}
+
 }  // namespace
 }  // namespace tarmac::sim::truth
