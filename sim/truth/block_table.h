@@ -30,8 +30,9 @@ class BlockTable {
       if (slot.block && slot.index == index) return slot.block;
     }
     auto made = std::make_shared<const Block>(make_(index));
+    const std::scoped_lock lock(mutex_);
     make_room(index);
-    put(index, made);
+    slots_[index % slots_.size()] = {index, made};
     return made;
   }
 
@@ -48,9 +49,8 @@ class BlockTable {
   };
   static constexpr std::size_t few_times = 8;
 
-  /// Doubles the room when, on average, every block has been made more than a few times.
+  /// Doubles the room when, on average, every block has been made more than a few times. Under the lock.
   void make_room(std::size_t index) const {
-    const std::scoped_lock lock(mutex_);
     blocks_ = std::max(blocks_, index + 1);
     if (++made_ <= few_times * blocks_) return;
     made_ = 0;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "scenes/equipment/equipment.h"
+#include "scenes/primitives/inside.h"
 #include "scenes/primitives/mesh_builder.h"
 
 namespace tarmac::scenes {
@@ -29,6 +30,16 @@ Mesh build(const Add& add) {
 
 TEST(Primitives, BoxHasItsVolume) {
   EXPECT_NEAR(volume_m3(build([](auto& b) { add_box(b, {1, 2, 3}, {2, 4, 6}); })), 1 * 2 * 3, 1e-5);
+}
+
+/// A building of one skin has an inside that is no solid, however small its door.
+TEST(Primitives, OnlyAClosedSurfaceIsSolid) {
+  Mesh box = build([](auto& b) { add_box(b, {0, 0, 0}, {40, 40, 10}); });
+  EXPECT_TRUE(is_inside(box, {20, 20, 5}));
+  EXPECT_FALSE(is_inside(box, {20, 20, 10.1}));
+  box.triangles.pop_back();
+  EXPECT_GT(winding_number(box, {20, 20, 5}), 0.5);
+  EXPECT_FALSE(is_inside(box, {20, 20, 5}));
 }
 
 TEST(Primitives, BeamHasLengthTimesSection) {

@@ -197,5 +197,20 @@ TEST(Collisions, AreLookedForWithTheRigsBodyWhereItHasASizeAndWithTheMotionsWher
     EXPECT_EQ(refused(resolve_rig(core::ConfigNode::parse(rig, "rig.yaml"))), refused(rig)) << rig;
 }
 
+/// Sizes say how large somebody is; how far below the device the feet are, the motion knows.
+TEST(Collisions, ASizeOfTheRigsLeavesTheFeetOnTheGround) {
+  SimulationInput input;
+  input.scenario_name = "test";
+  input.duration = core::duration_from_s(20);
+  input.scene = std::make_shared<scenes::Scene>(cast(flying_box({20, 0, -0.2}, {-2, 0, 0})));  // knee-high
+  input.body = box_of("{kind: handheld, path: [{straight_m: 5}]}");
+  auto ego = std::make_shared<tests::SteadyMotion>();
+  ego->length_s = 20;
+  ego->p0_m.z() = input.body.below_m;
+  input.motion = ego;
+  input.rig = core::ConfigNode::parse("lidar: {}\nbody: {length_m: 0.8, width_m: 0.8, height_m: 1.8}\n", "rig.yaml");
+  EXPECT_THROW(check(input), core::InputError);
+}
+
 }  // namespace
 }  // namespace tarmac::sim

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "sim/lidar/beam_field.h"
 #include "tests/sim/lidar/beam_world.h"
 
 namespace tarmac::sim::lidar {
@@ -229,6 +230,29 @@ INSTANTIATE_TEST_SUITE_P(Profiles, Sensors,
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+/// Three rows of which the lowest looks one cycle ahead of the others, into nothing: open is what has no neighbour.
+TEST(Neighbours, SidesOnWhichTheSweepEndsAreOpen) {
+  Neighbours neighbours;
+  neighbours.set({{.cycles = 1, .channel = 1}, {.cycles = 0, .channel = 2}, {}});
+  CentreField field;
+  field.resize(12);
+  std::vector<std::uint8_t> open;
+  neighbours.look(field, {0}, open);
+  const std::vector<std::uint8_t> want{side::left | side::below,
+                                       side::left | side::below,
+                                       side::left | side::above,  // the middle's lower one is before
+                                       side::below,
+                                       0,
+                                       side::above,
+                                       side::below,
+                                       0,
+                                       side::above,
+                                       side::right | side::below | side::above,
+                                       side::right,
+                                       side::right | side::above};
+  EXPECT_EQ(open, want);
+}
 
 TEST(Footprint, AdaptiveRaysGiveTheFullFootprintsPoints) {
   BeamOptions adaptive = seven("strongest"), full = adaptive;
