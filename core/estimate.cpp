@@ -12,7 +12,7 @@
 namespace tarmac::core {
 namespace {
 
-constexpr std::int64_t kFormatVersion = 1;
+constexpr std::int64_t kFormatVersion = 2;
 constexpr std::size_t kPoseValues = 12;  ///< rotation column by column, then translation
 
 void append_pose(std::vector<double>& out, const SE3& T) {
@@ -41,14 +41,43 @@ ChunkData segment_chunk(const Segment& segment) {
   std::vector<std::int64_t> times;
   for (const Time t : segment.times) times.push_back(to_ns(t));
   data.add<std::int64_t>(times);
+  std::vector<double> twists;
+  for (const Vector6& twist : segment.twists) twists.insert(twists.end(), twist.data(), twist.data() + 6);
+  data.add<double>(twists);
   return data;
+}
+
+/// How many poses and twists a model of so many times has; splines: any order from 4 to 6.
+bool fits(const Segment& segment) {
+  const std::size_t poses = segment.poses.size(), times = segment.times.size(), twists = segment.twists.size();
+  switch (segment.model) {
+    case SegmentModel::two_pose_slerp:
+    case SegmentModel::two_pose_screw:
+      return poses == 2 && times == 0 && twists == 0;
+    case SegmentModel::held:
+      return poses == 1 && times == 0 && twists == 0;
+    case SegmentModel::sampled_screw:
+    case SegmentModel::sampled_slerp:
+    case SegmentModel::sampled_hold:
+      return poses >= 1 && poses == times && twists == 0;
+    case SegmentModel::spline_split:
+    case SegmentModel::spline_se3:
+      return times >= poses + 4 && times <= poses + 6 && 2 * poses >= times && twists == 0;
+    case SegmentModel::gp_wnoa:
+      return poses >= 2 && poses == times && twists == poses;
+    case SegmentModel::gp_wnoj:
+      return poses >= 2 && poses == times && twists == 2 * poses;
+    case SegmentModel::gp_singer:
+      return poses >= 2 && poses == times && twists == 2 * poses + 1;
+  }
+  return false;
 }
 
 Segment segment_from_chunk(const ChunkData& data, const std::string& where) {
   const auto fail = [&](const char* what) { throw DamagedFile(fmt::format("{}: a segment {}", where, what)); };
   Segment segment;
   const std::uint8_t model = data.value<std::uint8_t>(0);
-  if (model < 1 || model > 6) fail("has an unknown model");
+  if (model < 1 || model > 11) fail("has an unknown model");
   segment.model = static_cast<SegmentModel>(model);
   const auto span = data.column<std::int64_t>(1);
   const auto values = data.column<double>(2);
@@ -60,9 +89,16 @@ Segment segment_from_chunk(const ChunkData& data, const std::string& where) {
   segment.t1 = time_from_ns(span[1]);
   for (std::size_t i = 0; i < values.size() / kPoseValues; ++i) segment.poses.push_back(pose_at(values, i));
   for (const std::int64_t t_ns : data.column<std::int64_t>(3)) segment.times.push_back(time_from_ns(t_ns));
-  const bool two = segment.model == SegmentModel::two_pose_slerp || segment.model == SegmentModel::two_pose_screw;
-  const std::size_t wanted = two ? 2 : segment.model == SegmentModel::held ? 1 : segment.times.size();
-  if (segment.poses.size() != wanted) fail("has a wrong number of poses");
+  const auto twists = data.column<double>(4);
+  if (twists.size() % 6 != 0) fail("has a wrong shape");
+  for (std::size_t i = 0; i < twists.size() / 6; ++i) {
+    segment.twists.push_back(Eigen::Map<const Vector6>(twists.data() + 6 * i));
+    if (!segment.twists.back().allFinite()) fail("has a velocity that is not finite");
+  }
+  if (!fits(segment)) fail("has a wrong number of poses, times or velocities");
+  for (std::size_t i = 1; i < segment.times.size(); ++i) {
+    if (segment.times[i] <= segment.times[i - 1]) fail("has times that do not ascend");
+  }
   return segment;
 }
 

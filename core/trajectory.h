@@ -63,15 +63,23 @@ enum class SegmentModel : std::uint8_t {
   sampled_screw = 4,   ///< poses at listed times, a constant twist between neighbours
   sampled_slerp = 5,   ///< poses at listed times, slerp and lerp between neighbours
   sampled_hold = 6,    ///< poses at listed times, each held until the next
+  spline_split = 7,    ///< cumulative B-spline of rotation, B-spline of position, same knots (spline_trajectory.h)
+  spline_se3 = 8,      ///< cumulative B-spline on SE(3)
+  gp_wnoa = 9,         ///< Gaussian process with white noise on acceleration, its mean between knots (gp_trajectory.h)
+  gp_wnoj = 10,        ///< with white noise on jerk
+  gp_singer = 11,      ///< with an acceleration that forgets itself (Singer)
 };
 
 /// A model with its parameters over [t0, t1]. `poses` holds 2 (two_pose_*), 1 (held) or `times.size()` entries
-/// (sampled_*, strictly ascending times, the first t0, the last t1).
+/// (sampled_*, strictly ascending times, the first t0, the last t1). Splines: `poses` are control points, n of them, and
+/// `times` their n + order knots. Gaussian processes: poses at the knots `times` (two or more), and `twists` their
+/// body-centric velocities one after the other, then (wnoj, singer) their derivatives, then (singer) the six rates [1/s].
 struct Segment {
   Time t0, t1;
   SegmentModel model = SegmentModel::held;
   std::vector<SE3> poses;
-  std::vector<Time> times;  ///< of sampled_* only
+  std::vector<Time> times;       ///< not of two_pose_* and held
+  std::vector<Vector6> twists = {};  ///< of gp_* only
 
   static Segment two_pose(SegmentModel model, Time t0, const SE3& T0, Time t1, const SE3& T1);
   static Segment hold(Time t0, Time t1, const SE3& T);
