@@ -16,16 +16,22 @@ void check_spacing(Duration spacing) {
   }
 }
 
-/// Appends knots from `next` (called with the last knot) until `beyond` lie after `until`.
+Time last_of(std::span<const Time> knots) {
+  if (knots.empty()) throw InputError("knots are placed after others, but there are none");
+  return knots.back();
+}
+
+/// New knots from next(the one before), until the last lies at or after `end` and `beyond` of all after it.
 template <class Next>
-std::vector<Time> place(Time last, Time until, int beyond, const Next& next) {
-  std::vector<Time> knots;
-  for (int after = 0; after < beyond;) {
+std::vector<Time> place(std::span<const Time> knots, Time end, int beyond, const Next& next) {
+  auto after = knots.end() - std::upper_bound(knots.begin(), knots.end(), end);
+  std::vector<Time> added;
+  for (Time last = last_of(knots); last < end || after < beyond;) {
     last = next(last);
-    knots.push_back(last);
-    after += last > until;
+    added.push_back(last);
+    after += last > end;
   }
-  return knots;
+  return added;
 }
 
 int density(double excitation, const ExcitationRule& rule) {
@@ -36,21 +42,17 @@ int density(double excitation, const ExcitationRule& rule) {
 
 }  // namespace
 
-int missing_knots(std::span<const Time> knots, Time until, int order) {
-  const auto after = knots.end() - std::upper_bound(knots.begin(), knots.end(), until);
-  return std::max(0, order - static_cast<int>(after));
-}
-
-std::vector<Time> uniform_spline_knots(int order, Time begin, Time end, Duration spacing) {
+std::vector<Time> uniform_knots(Time begin, Time end, Duration spacing, int order) {
   check_spacing(spacing);
   if (end < begin) {
     throw InputError(
         fmt::format("knots over a span that ends ({} ns) before it begins ({} ns)", to_ns(end), to_ns(begin)));
   }
-  return uniform_knots(begin - order * spacing, end, order, spacing);
+  const Time before[] = {begin - order * spacing};
+  return uniform_knots_after(before, end, spacing, order);
 }
 
-std::vector<Time> with_margins(int order, std::span<const Time> inner) {
+std::vector<Time> with_margins(std::span<const Time> inner, int order) {
   if (inner.size() < 2) throw InputError(fmt::format("a spline needs two knots or more, not {}", inner.size()));
   for (std::size_t i = 1; i < inner.size(); ++i) {
     if (inner[i] <= inner[i - 1]) {
@@ -66,12 +68,12 @@ std::vector<Time> with_margins(int order, std::span<const Time> inner) {
   return knots;
 }
 
-std::vector<Time> uniform_knots(Time last, Time until, int beyond, Duration spacing) {
+std::vector<Time> uniform_knots_after(std::span<const Time> knots, Time end, Duration spacing, int beyond) {
   check_spacing(spacing);
-  return place(last, until, beyond, [&](Time t) { return t + spacing; });
+  return place(knots, end, beyond, [&](Time t) { return t + spacing; });
 }
 
-std::vector<Time> sweep_knots(Time last, Time sweep_end, int beyond, Duration period) {
+std::vector<Time> sweep_knots_after(std::span<const Time> knots, Time sweep_end, Duration period, int beyond) {
   check_spacing(period);
   const Time anchor = sweep_end + Duration(1);
   // The first of the anchor's multiples of a period that lies at least half a period after `last`; the anchor itself
@@ -81,7 +83,7 @@ std::vector<Time> sweep_knots(Time last, Time sweep_end, int beyond, Duration pe
     const std::int64_t periods = gap_ns <= 0 ? 0 : (gap_ns + period_ns - 1) / period_ns;
     return anchor + periods * period;
   };
-  return place(last, sweep_end, beyond, next);
+  return place(knots, sweep_end, beyond, next);
 }
 
 int knots_per_slot(std::span<const ImuSample> samples, const ExcitationRule& rule) {
@@ -97,13 +99,13 @@ int knots_per_slot(std::span<const ImuSample> samples, const ExcitationRule& rul
   return std::max(density(gyro_rad_s / n, rule), density(accel_excess_m_s2, rule));
 }
 
-std::vector<Time> excitation_knots(Time last, Time until, int beyond, std::span<const ImuSample> samples,
-                                   const ExcitationRule& rule) {
+std::vector<Time> excitation_knots_after(std::span<const Time> knots, Time end, std::span<const ImuSample> samples,
+                                         const ExcitationRule& rule, int beyond) {
   check_spacing(rule.slot);
   const auto at_or_after = [&](Time t) {
     return std::lower_bound(samples.begin(), samples.end(), t, [](const ImuSample& s, Time u) { return s.t < u; });
   };
-  const auto within = [&](Time begin, Time end) { return std::span(at_or_after(begin), at_or_after(end)); };
+  const auto within = [&](Time from, Time to) { return std::span(at_or_after(from), at_or_after(to)); };
   const auto density_of = [&](Time slot_begin) {
     const auto own = within(slot_begin, slot_begin + rule.slot);
     if (!own.empty()) return knots_per_slot(own, rule);
@@ -112,9 +114,9 @@ std::vector<Time> excitation_knots(Time last, Time until, int beyond, std::span<
     const Time newest = std::prev(before)->t;
     return knots_per_slot(within(newest - rule.slot + Duration(1), newest + Duration(1)), rule);
   };
-  Time slot_begin = last;
-  int placed = 0, count = density_of(last);
-  return place(last, until, beyond, [&](Time) {
+  Time slot_begin = last_of(knots);
+  int placed = 0, count = density_of(slot_begin);
+  return place(knots, end, beyond, [&](Time) {
     if (placed == count) {
       slot_begin += rule.slot;
       placed = 0;
