@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/gp_segment.h"
+#include "core/spline_segment.h"
 
 namespace tarmac::core {
 namespace {
@@ -110,6 +112,8 @@ Segment Segment::sampled(SegmentModel model, std::vector<Time> times, std::vecto
 }
 
 SE3 Segment::pose(Time t) const {
+  if (is_spline(model)) return spline_segment_pose(*this, t);
+  if (is_gp(model)) return gp_segment_pose(*this, t);
   const Bracket b = bracket(*this, t);
   if (is_held(model) || b.first == b.second) return poses[b.first];
   return is_screw(model) ? screw(poses[b.first], poses[b.second], b.s)
@@ -117,6 +121,8 @@ SE3 Segment::pose(Time t) const {
 }
 
 SE3 Segment::pose(Time t, std::vector<BlockJacobian>& jacobians) const {
+  if (is_spline(model)) return spline_segment_pose(*this, t, jacobians);
+  if (is_gp(model)) return gp_segment_pose(*this, t, jacobians);
   const Bracket b = bracket(*this, t);
   jacobians.clear();
   if (is_held(model) || b.first == b.second) {
