@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/estimate.h"
 #include "core/random.h"
 #include "core/spline_trajectory.h"
+#include "tests/core/parametric_laws.h"
 #include "tests/support/numeric.h"
 #include "tests/support/temporary_folder.h"
 
@@ -71,16 +73,8 @@ std::vector<Time> some_times(const SplineTrajectory& spline, int count, std::uin
   return times;
 }
 
-/// The change from one state to another, in the tangent of states.
-StateVector change(const Kinematics& from, const Kinematics& to) {
-  StateVector d;
-  d << se3::log(from.T_world_body.inverse() * to.T_world_body), to.v_world - from.v_world,
-      to.omega_body - from.omega_body, to.a_world - from.a_world, to.alpha_body - from.alpha_body;
-  return d;
-}
-
 bool same_bits(const Kinematics& a, const Kinematics& b) {
-  return a.T_world_body.matrix() == b.T_world_body.matrix() && change(a, b).tail<12>().norm() == 0;
+  return a.T_world_body.matrix() == b.T_world_body.matrix() && state_difference(a, b).tail<12>().norm() == 0;
 }
 
 class EverySpline : public ::testing::TestWithParam<Case> {};
@@ -146,7 +140,7 @@ TEST_P(EverySpline, RateIsTheDerivativeOfTheStateByTime) {
     if (near_a_knot(spline, t, kStep_ns)) continue;
     ++checked;
     const Kinematics state = spline.at(t);
-    const auto tangent = [&](Time s) { return change(state, spline.at(s)); };
+    const auto tangent = [&](Time s) { return state_difference(state, spline.at(s)); };
     const StateVector numeric = by_time(tangent, t, kStep_ns);
     EXPECT_LT(tests::relative_difference(spline.rate(t, Derivative::acceleration), numeric), 1e-6);
     const StateVector pose_only = spline.rate(t, Derivative::pose);
@@ -167,7 +161,8 @@ Eigen::MatrixXd numeric_jacobian(const SplineTrajectory& spline, Time t) {
     low.retract(-d);
     // The logarithm of R^T R has last digits even for one and the same R.
     const Kinematics before = low.at(t), after = high.at(t);
-    J.col(i) = same_bits(before, after) ? StateVector::Zero() : StateVector(change(before, after) / (2 * kStep));
+    J.col(i) =
+        same_bits(before, after) ? StateVector::Zero() : StateVector(state_difference(before, after) / (2 * kStep));
   }
   return J;
 }
@@ -232,8 +227,8 @@ TEST_P(EverySpline, IsSmoothAcrossKnots) {
   const SplineTrajectory spline = lively(GetParam(), 6);
   for (const Time knot : spline.knots()) {
     if (!spline.covers(knot) || !spline.covers(knot - Duration(1))) continue;
-    const StateVector jump =
-        change(spline.at(knot - Duration(1)), spline.at(knot)) - 1e-9 * spline.rate(knot, Derivative::acceleration);
+    const StateVector jump = state_difference(spline.at(knot - Duration(1)), spline.at(knot)) -
+                             1e-9 * spline.rate(knot, Derivative::acceleration);
     // Order 4 has a jump of jerk at knots, so that a nanosecond leaves about 1e-9 x jerk in the accelerations.
     EXPECT_LT(jump.head<12>().norm(), 1e-10);
     EXPECT_LT(jump.tail<6>().norm(), 1e-5);
@@ -342,29 +337,7 @@ TEST_P(EverySpline, AtRestNothingMoves) {
 }
 
 TEST_P(EverySpline, DifferenceUndoesAStepAndItsJacobianCarriesAFurtherOne) {
-  const SplineTrajectory spline = lively(GetParam(), 10);
-  const RandomStream stream(11, "test/step");
-  Eigen::VectorXd step(spline.parameters());
-  for (int i = 0; i < step.size(); ++i) step[i] = 0.4 * stream.normal(static_cast<std::uint64_t>(i));
-  SplineTrajectory moved = spline;
-  moved.retract(step);
-  Eigen::VectorXd d, high, low;
-  Eigen::MatrixXd J, unused;
-  for (int block = 0; block < spline.blocks(); ++block) {
-    const Eigen::VectorXd base = spline.value(block);
-    moved.difference(block, base, d, J);
-    EXPECT_LT((d - step.segment<6>(6 * block)).norm(), 1e-12);
-    for (int j = 0; j < 6; ++j) {
-      Eigen::VectorXd further = Eigen::VectorXd::Zero(spline.parameters());
-      further[6 * block + j] = 1e-5;
-      SplineTrajectory up = moved, down = moved;
-      up.retract(further);
-      down.retract(-further);
-      up.difference(block, base, high, unused);
-      down.difference(block, base, low, unused);
-      EXPECT_LT(tests::relative_difference(J.col(j), (high - low) / 2e-5), 1e-6);
-    }
-  }
+  expect_consistent_difference(lively(GetParam(), 10));
 }
 
 TEST_P(EverySpline, ExtendingAndDroppingLeaveTheRestAsItWas) {
@@ -437,6 +410,19 @@ TEST_P(EverySpline, ASegmentHasTheSamePosesFromItsOwnControlPointsOnly) {
   damaged.times.pop_back();
   damaged.times.pop_back();
   EXPECT_THROW(damaged.pose(t0), InputError);
+}
+
+TEST_P(EverySpline, ASegmentSurvivesAFileBitByBit) {
+  const tests::TemporaryFolder folder;
+  const SplineTrajectory spline = lively(GetParam(), 19);
+  Estimate estimate;
+  estimate.estimator = "test";
+  const Time middle = spline.begin() + (spline.end() - spline.begin()) / 2;
+  estimate.causal.append(spline.segment(spline.begin(), middle));
+  estimate.causal.append(spline.segment(middle, spline.end()));
+  save_estimate(folder / "trajectory.bin", estimate);
+  const Estimate back = load_estimate(folder / "trajectory.bin");
+  for (const Time t : some_times(spline, 30)) EXPECT_EQ(back.causal.pose(t).matrix(), spline.pose(t).matrix());
 }
 
 TEST_P(EverySpline, ASegmentsJacobiansMatchCentralDifferences) {
