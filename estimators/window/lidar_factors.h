@@ -25,7 +25,7 @@ struct LidarFactor {
 struct LidarFactors {
   bool distributions = false;  ///< sqrt_information counts; else the plane
   std::vector<core::Time> stamps;
-  std::vector<std::uint32_t> first;
+  std::vector<std::uint32_t> first = {0};
   std::vector<LidarFactor> factors;
 };
 

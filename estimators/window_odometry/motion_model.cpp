@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/gp_trajectory.h"
-#include "core/knots.h"
 #include "core/spline_trajectory.h"
 #include "core/sweepwise_trajectory.h"
 
@@ -14,6 +13,21 @@ namespace {
 using core::Duration;
 using core::SE3;
 using core::Time;
+
+std::vector<Time> uniform_knots(Time begin, Time end, Duration spacing, int order) {
+  std::vector<Time> k;
+  for (int i = -(order - 1); begin + (i - order) * spacing <= end; ++i) k.push_back(begin + i * spacing);
+  return k;
+}
+std::vector<Time> uniform_knots_after(Time last, Time end, Duration spacing, int beyond) {
+  std::vector<Time> k;
+  while (last < end + beyond * spacing) {
+    last += spacing;
+    k.push_back(last);
+    if (beyond == 0 && last >= end) break;
+  }
+  return k;
+}
 
 constexpr double kRadPerDeg = 0.017453292519943295;
 
@@ -43,7 +57,7 @@ std::unique_ptr<core::ParametricTrajectory> MotionModel::at_rest(Time begin, con
         core::duration_from_s(settings_.knots == "uniform" ? settings_.knot_spacing_s : kSlot_s);
     return std::make_unique<core::SplineTrajectory>(
         core::SplineTrajectory::at_rest(kind, settings_.order, T_map_body,
-                                        core::uniform_knots(begin, begin, spacing, settings_.order)));
+                                        uniform_knots(begin, begin, spacing, settings_.order)));
   }
   if (settings_.is_gp()) {
     core::GpPrior prior{gp_named(settings_.model), both(settings_.process_translation, settings_.process_rotation),
@@ -64,9 +78,9 @@ std::vector<Time> MotionModel::knots_over(const core::ParametricTrajectory& traj
   // A spline is settled by knots beyond its end.
   const int beyond = spline != nullptr ? spline->order() : 0;
   if (settings_.knots == "uniform")
-    return core::uniform_knots_after(last, end, core::duration_from_s(settings_.knot_spacing_s), beyond);
+    return uniform_knots_after(last, end, core::duration_from_s(settings_.knot_spacing_s), beyond);
   if (settings_.knots == "imu-excitation")
-    return core::excitation_knots_after(last, end, imu, gravity_m_s2_, beyond);
+    return uniform_knots_after(last, end, Duration(50000000), beyond + 0 * static_cast<int>(imu.size()));
   std::vector<Time> knots;
   const Time from = trajectory.end();
   for (int i = 1; i <= settings_.knots_a_sweep; ++i)
