@@ -10,8 +10,8 @@ Vector3d AccelerometerResidual::operator()(const core::Kinematics& state, const 
                                            const Vector3d& bias) const {
   const Matrix3d R_body_map = state.T_world_body.linear().transpose();
   const Vector3d &w = state.omega_body, &lever = T_body_imu.translation();
-  Vector3d f_body = R_body_map * (state.a_world - gravity_map_m_s2) + state.alpha_body.cross(lever) +
-                    w.cross(w.cross(lever));
+  Vector3d f_body =
+      R_body_map * (state.a_world - gravity_map_m_s2) + state.alpha_body.cross(lever) + w.cross(w.cross(lever));
   if (omit_transport) f_body -= w.cross(R_body_map * state.v_world);
   return T_body_imu.linear().transpose() * f_body + bias - measured_m_s2;
 }

@@ -10,8 +10,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Of a matrix of unit diagonal: a pivot is what one unknown's information has left once those before it are free. Below
-/// this it is rounding.
+/// Of a matrix of unit diagonal: a pivot is what one unknown's information has left once those before it are free.
+/// Below this it is rounding.
 constexpr double kSmallestPivot = 1e-14;
 
 /// In-place lower Cholesky; false where a pivot is too small or not a number.
@@ -78,11 +78,13 @@ bool BandedFactor::factor_band() {
     if (!cholesky(top)) return false;
     top.triangularView<Eigen::StrictlyUpper>().setZero();
     const int below = rows_of(k) - kPanel;
+    operations_ += kPanel * kPanel * (kPanel / 3.0 + std::max(0, below));
     if (below <= 0) continue;
     auto R = P.middleRows(kPanel, below);
     top.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(R);
     for (int done = 0, next = k + 1; done < below; done += kPanel, ++next) {
       const int n = below - done, width = std::min(kPanel, n);
+      operations_ += 1.0 * n * width * kPanel;
       panel(next).topLeftCorner(n, width).noalias() -= R.bottomRows(n) * R.middleRows(done, width).transpose();
     }
   }
@@ -92,14 +94,15 @@ bool BandedFactor::factor_band() {
 bool BandedFactor::factor_border(const BandedSystem& system, double lambda, bool identity) {
   if (border_ == 0) return true;
   W_ = MatrixXd::Zero(kPanel * panels_, border_);
-  W_.topRows(band_) =
-      scale_.head(band_).asDiagonal() * system.E_ * scale_.tail(border_).asDiagonal();
+  W_.topRows(band_) = scale_.head(band_).asDiagonal() * system.E_ * scale_.tail(border_).asDiagonal();
   forward(W_);
+  for (int k = 0; k < panels_; ++k) operations_ += 1.0 * kPanel * border_ * (rows_of(k) - kPanel / 2);
   M_ = scale_.tail(border_).asDiagonal() * system.C_ * scale_.tail(border_).asDiagonal();
   for (int i = 0; i < border_; ++i) {
     const double s = scale_[band_ + i];
     M_(i, i) = damped(system.C_(i, i), lambda, identity) * s * s;
   }
+  operations_ += border_ * border_ * (W_.rows() / 2.0 + border_ / 3.0);
   M_.selfadjointView<Eigen::Lower>().rankUpdate(W_.transpose(), -1.0);
   if (!cholesky(M_)) return false;
   M_.triangularView<Eigen::StrictlyUpper>().setZero();
@@ -121,8 +124,7 @@ void BandedFactor::backward(Eigen::Ref<MatrixXd> x) const {
     const ConstPanel P = panel(k);
     auto xk = x.middleRows(kPanel * k, kPanel);
     const int below = rows_of(k) - kPanel;
-    if (below > 0)
-      xk.noalias() -= P.middleRows(kPanel, below).transpose() * x.middleRows(kPanel * (k + 1), below);
+    if (below > 0) xk.noalias() -= P.middleRows(kPanel, below).transpose() * x.middleRows(kPanel * (k + 1), below);
     P.topRows<kPanel>().triangularView<Eigen::Lower>().transpose().solveInPlace(xk);
   }
 }

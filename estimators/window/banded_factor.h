@@ -16,6 +16,8 @@ class BandedFactor {
 
   /// False where the matrix is not positive definite to working precision: nothing else may be asked then.
   bool ok() const { return ok_; }
+  /// Multiply-adds that it took, counted by the sizes of the products.
+  double operations() const { return operations_; }
   /// H^-1 x in place; x has band + border rows.
   void solve(Eigen::Ref<Eigen::MatrixXd> x) const;
   /// Entries of H^-1 within the band, as BandedSystem::covariance_runs.
@@ -40,10 +42,11 @@ class BandedFactor {
 
   int band_, half_, border_, panels_, rows_;
   bool ok_ = false;
-  Eigen::VectorXd scale_;   ///< D, band then border
-  std::vector<double> L_;   ///< panels
-  Eigen::MatrixXd W_;       ///< padded band x border
-  Eigen::MatrixXd M_;       ///< lower
+  double operations_ = 0;
+  Eigen::VectorXd scale_;  ///< D, band then border
+  std::vector<double> L_;  ///< panels
+  Eigen::MatrixXd W_;      ///< padded band x border
+  Eigen::MatrixXd M_;      ///< lower
 };
 
 }  // namespace tarmac::estimators

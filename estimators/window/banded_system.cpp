@@ -31,8 +31,9 @@ void BandedSystem::set_zero() {
 
 double* BandedSystem::column(int j) {
   const int k = j / kPanel, c = j % kPanel;
-  return panels_.data() + (static_cast<std::size_t>(k) * kPanel + static_cast<std::size_t>(c)) *
-                              static_cast<std::size_t>(panel_rows()) + c;
+  return panels_.data() +
+         (static_cast<std::size_t>(k) * kPanel + static_cast<std::size_t>(c)) * static_cast<std::size_t>(panel_rows()) +
+         c;
 }
 
 const double* BandedSystem::column(int j) const {
@@ -70,7 +71,8 @@ void BandedSystem::add(int first, int count, std::span<const int> columns, const
   const auto borders = static_cast<int>(columns.size());
   for (int b = 0; b < borders; ++b) {
     const int to = columns[static_cast<std::size_t>(b)];
-    if (to < 0 || to >= border_) throw std::invalid_argument(fmt::format("no column {} in a border of {}", to, border_));
+    if (to < 0 || to >= border_)
+      throw std::invalid_argument(fmt::format("no column {} in a border of {}", to, border_));
     E_.col(to).segment(first, count) += H.row(count + b).head(count).transpose();
     g_[band_ + to] += g[count + b];
     for (int a = 0; a <= b; ++a) {
@@ -173,9 +175,7 @@ std::size_t BandedSystem::stored() const {
 }
 
 double BandedSystem::factor_operations() const {
-  const double n = kPanel, below = half_, border = border_;
-  const double panel = n * n * n / 3 + below * n * n + n * below * (below + n) / 2 + border * n * (n + 2 * below + border) / 2;
-  return panels() * panel + border * border * border / 3;
+  return BandedFactor(*this, 0, false).operations();
 }
 
 }  // namespace tarmac::estimators

@@ -61,7 +61,7 @@ class BandedSystem {
 
   Eigen::MatrixXd dense() const;  ///< H, for tests and small windows
   const Eigen::VectorXd& g() const { return g_; }
-  /// Doubles kept, and multiply-adds that one factorisation takes: both linear in band().
+  /// Doubles kept, and multiply-adds that one factorisation took, counted as it went: both linear in band().
   std::size_t stored() const;
   double factor_operations() const;
 

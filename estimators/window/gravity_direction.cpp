@@ -28,8 +28,7 @@ Eigen::Vector2d difference(const Vector3d& base, const Vector3d& g, Eigen::Matri
   const double sine = base.cross(g).norm(), angle = std::atan2(sine, base.dot(g));
   const bool small = angle < 1e-3;
   const double f = small ? 1 + angle * angle / 6 : angle / sine;
-  const double slope =
-      small ? 1.0 / 3 + 2 * angle * angle / 15 : (sine - angle * base.dot(g)) / (sine * sine * sine);
+  const double slope = small ? 1.0 / 3 + 2 * angle * angle / 15 : (sine - angle * base.dot(g)) / (sine * sine * sine);
   const auto B = tangent(base);
   const Eigen::Vector2d across = B.transpose() * g;
   J = (f * B.transpose() - slope * across * base.transpose()) * tangent(g);

@@ -9,8 +9,8 @@ namespace tarmac::estimators {
 
 /// p [m] in the body, mean q [m] in the map, U^T U the information:
 ///   r(T) = U (T p - q)      dr/dxi = U R [ I  -hat(p) ]   for T <- T Exp(xi), xi = (rho, phi)
-/// Source: Magnusson, The Three-Dimensional Normal-Distributions Transform (2009), ch. 6; Jacobian of T p as Sola et al.
-/// 2018 (arXiv:1812.01537), eq. 182.
+/// Source: Magnusson, The Three-Dimensional Normal-Distributions Transform (2009), ch. 6; Jacobian of T p as Sola et
+/// al. 2018 (arXiv:1812.01537), eq. 182.
 struct PointToDistribution {
   Eigen::Vector3d p_body = Eigen::Vector3d::Zero();
   Eigen::Vector3d q_map = Eigen::Vector3d::Zero();

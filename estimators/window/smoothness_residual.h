@@ -41,7 +41,8 @@ struct QuadratureNode {
 };
 inline std::span<const QuadratureNode> quadrature(int samples) {
   static const std::array<QuadratureNode, 1> one = {{{0.5, 1.0}}};
-  static const std::array<QuadratureNode, 2> two = {{{0.5 - std::sqrt(1.0 / 12), 0.5}, {0.5 + std::sqrt(1.0 / 12), 0.5}}};
+  static const std::array<QuadratureNode, 2> two = {
+      {{0.5 - std::sqrt(1.0 / 12), 0.5}, {0.5 + std::sqrt(1.0 / 12), 0.5}}};
   static const std::array<QuadratureNode, 3> three = {
       {{0.5 - std::sqrt(0.15), 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 + std::sqrt(0.15), 5.0 / 18}}};
   switch (samples) {

@@ -15,8 +15,8 @@ struct Term {
   static constexpr int kMaxRows = core::state_row::count;
   static constexpr int kMaxBorders = 4;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxRows, 1>;
-  using Band = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows,
-                             core::StateJet::kMaxColumns>;
+  using Band =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, core::StateJet::kMaxColumns>;
   using BorderColumns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, 6>;
   struct Border {
     int column = 0;

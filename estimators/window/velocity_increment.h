@@ -10,15 +10,15 @@ namespace tarmac::estimators {
 
 /// One reading's share of a stretch [t1, t2]: it stands for the time nearer to it than to its neighbours.
 struct IncrementSample {
-  core::Time at;  ///< where the pose is asked: the reading's time, kept within the stretch
-  bool kept_at_end = false;   ///< `at` was moved onto an end and does not follow the offset
+  core::Time at;             ///< where the pose is asked: the reading's time, kept within the stretch
+  bool kept_at_end = false;  ///< `at` was moved onto an end and does not follow the offset
   Eigen::Vector3d accel_m_s2 = Eigen::Vector3d::Zero();
   double dt_s = 0;
   double dt_by_offset = 0;  ///< d(dt_s)/d(offset): -1 where only its end moves, +1 where only its begin does
 };
 
-/// The shares of readings (ascending; their times are stamp - offset) in [t1, t2]. Empty where some part of it is further
-/// than `reach` from any reading.
+/// The shares of readings (ascending; their times are stamp - offset) in [t1, t2]. Empty where some part of it is
+/// further than `reach` from any reading.
 std::vector<IncrementSample> increment_samples(const std::vector<ImuReading>& readings, double offset_s, core::Time t1,
                                                core::Time t2, core::Duration reach);
 

@@ -1,5 +1,5 @@
-/// A stretch of continuous-time motion with everything that is known of it: the problem that all sliding-window and batch
-/// methods of this folder's users solve.
+/// A stretch of continuous-time motion with everything that is known of it: the problem that all sliding-window and
+/// batch methods of this folder's users solve.
 ///
 /// Unknowns: the trajectory's parameters (a band), and a border of what acts on all of it: IMU biases at bias knots,
 /// gravity's direction, the IMU's time offset. Residuals know their Jacobian by the state at their time
@@ -32,10 +32,10 @@ struct SolveSettings {
   bool levenberg_marquardt = false;  ///< else Gauss-Newton
   int max_iterations = 5;
   double initial_lambda = 1e-4;
-  bool line_search = false;   ///< Gauss-Newton: halve a step up to three times where the cost does not fall; if it
-                              ///< does not fall then either, stay and end
+  bool line_search = false;  ///< Gauss-Newton: halve a step up to three times where the cost does not fall; if it
+                             ///< does not fall then either, stay and end
   double relative_decrease = 1e-4, absolute_decrease = 1e-4;  ///< of the cost, below which it ends
-  bool lidar = true;          ///< false: IMU and priors alone, for a prediction
+  bool lidar = true;                                          ///< false: IMU and priors alone, for a prediction
 };
 
 /// Gauss-Newton takes every step whose cost is finite (halving it up to three times until it is); Levenberg-Marquardt
@@ -43,7 +43,7 @@ struct SolveSettings {
 struct SolveReport {
   int iterations = 0;  ///< steps worked out
   double initial_cost = 0, final_cost = 0;
-  bool ok = true;  ///< false: singular or not finite; the state is what it was
+  bool ok = true;     ///< false: singular or not finite; the state is what it was
   int left_out = 0;   ///< readings that the time offset has moved out of the trajectory's span, at the end
   int uncovered = 0;  ///< LiDAR stamps and anchors at times that the trajectory does not cover
 };
@@ -61,8 +61,8 @@ class Window {
   core::ParametricTrajectory& trajectory() { return *state_.trajectory; }
   const core::ParametricTrajectory& trajectory() const { return *state_.trajectory; }
 
-  /// Readings in time order (throws std::invalid_argument else); those that the trajectory does not cover yet wait until
-  /// it does.
+  /// Readings in time order (throws std::invalid_argument else); those that the trajectory does not cover yet wait
+  /// until it does.
   void add(const ImuReading& reading);
   /// A bias knot with the last one's value. After the last; where the last one stands, nothing happens.
   void add_bias_knot(core::Time t);

@@ -14,10 +14,10 @@ using Kind = WindowProblem::Item::Kind;
 
 /// Which unknowns go, and which of the rest share residuals with them.
 struct Cut {
-  core::Time begin;          ///< of what stays
-  int blocks = 0;            ///< that go
-  int bias_knots = 0;        ///< that go
-  int touched_blocks = 0;    ///< that stay, after those
+  core::Time begin;               ///< of what stays
+  int blocks = 0;                 ///< that go
+  int bias_knots = 0;             ///< that go
+  int touched_blocks = 0;         ///< that stay, after those
   MarginalPrior::Border touched;  ///< that stays, columns as they are before the cut
 };
 
@@ -57,8 +57,8 @@ void find_touched(const BandedSystem& system, const BorderLayout& layout, int bl
   cut.touched_blocks = (last + block_size - 1) / block_size - cut.blocks;
   for (int i = 6 * cut.bias_knots; i < 6 * layout.biases; ++i)
     if (touches(system.band() + i)) cut.touched.biases.push_back(i);
-  cut.touched.gravity = layout.gravity >= 0 && (touches(system.band() + layout.gravity) ||
-                                                touches(system.band() + layout.gravity + 1));
+  cut.touched.gravity =
+      layout.gravity >= 0 && (touches(system.band() + layout.gravity) || touches(system.band() + layout.gravity + 1));
   cut.touched.offset = layout.offset >= 0 && touches(system.band() + layout.offset);
 }
 

@@ -18,11 +18,11 @@ struct WindowModel {
   // IMU
   core::SE3 T_body_imu = core::SE3::Identity();
   double gravity_m_s2 = 9.80665;
-  double gyro_sigma_rad_s = 0;   ///< of one reading, an axis
-  double accel_sigma_m_s2 = 0;   ///< of one reading, an axis; not for trajectories without acceleration
-  bool omit_transport = false;   ///< for comparison only: the accelerometer as R^T(a - g) - omega x (R^T v), which
-                                 ///< forgets the transport term of body-centric velocities (upstream STEAM's form)
-  RobustLoss accel_loss;         ///< on the whitened norm of one reading (scale: standard deviations)
+  double gyro_sigma_rad_s = 0;       ///< of one reading, an axis
+  double accel_sigma_m_s2 = 0;       ///< of one reading, an axis; not for trajectories without acceleration
+  bool omit_transport = false;       ///< for comparison only: the accelerometer as R^T(a - g) - omega x (R^T v), which
+                                     ///< forgets the transport term of body-centric velocities (upstream STEAM's form)
+  RobustLoss accel_loss;             ///< on the whitened norm of one reading (scale: standard deviations)
   double gyro_walk_rad_s2_rthz = 0;  ///< of the bias between knots
   double accel_walk_m_s3_rthz = 0;
   bool free_gravity = false, free_imu_offset = false;

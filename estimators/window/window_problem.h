@@ -49,7 +49,15 @@ class WindowProblem {
   /// Residuals other than LiDAR's and the marginal prior.
   struct Item {
     enum class Kind : std::uint8_t {
-      reading, increment, smoothness, anchor, model_prior, bias_walk, bias_anchor, gravity_prior, offset_prior
+      reading,
+      increment,
+      smoothness,
+      anchor,
+      model_prior,
+      bias_walk,
+      bias_anchor,
+      gravity_prior,
+      offset_prior
     };
     Kind kind = Kind::reading;
     int index = 0;

@@ -39,8 +39,8 @@ void retract(WindowState& state, const BorderLayout& layout, const Eigen::Ref<co
 }
 
 BiasPlace bias_place(const std::vector<BiasKnot>& biases, core::Time t) {
-  const auto after = std::upper_bound(biases.begin(), biases.end(), t,
-                                      [](core::Time a, const BiasKnot& b) { return a < b.t; });
+  const auto after =
+      std::upper_bound(biases.begin(), biases.end(), t, [](core::Time a, const BiasKnot& b) { return a < b.t; });
   if (after == biases.begin()) return {0, 0};
   const auto k = static_cast<int>(after - biases.begin()) - 1;
   if (after == biases.end()) return {k, 0};

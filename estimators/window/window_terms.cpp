@@ -87,8 +87,8 @@ void WindowProblem::add_bias(const WindowState& state, core::Time stamp, int axi
   if (place.share > 0) term.add_border(6 * (place.knot + 1) + axis, 3) = place.share * by_bias;
 }
 
-/// The reading's time is stamp - offset, which is rounded to nanoseconds; the rest is made up for by the state's rate, so
-/// that the cost is smooth in the offset.
+/// The reading's time is stamp - offset, which is rounded to nanoseconds; the rest is made up for by the state's rate,
+/// so that the cost is smooth in the offset.
 void WindowProblem::reading_terms(const WindowState& state, const Item& item, bool jacobians,
                                   std::vector<Term>& out) const {
   const ImuReading& reading = data_->readings[static_cast<std::size_t>(item.index)];
@@ -150,8 +150,7 @@ void WindowProblem::increment_term(const WindowState& state, const Item& item, s
   const auto samples = increment_samples(data_->readings, state.imu_offset_s, t1, t2, kReach);
   if (samples.empty()) return;
   double variance = 0;
-  for (const IncrementSample& sample : samples)
-    variance += std::pow(model_->accel_sigma_m_s2 * sample.dt_s, 2);
+  for (const IncrementSample& sample : samples) variance += std::pow(model_->accel_sigma_m_s2 * sample.dt_s, 2);
   const double sigma = std::sqrt(variance);
   const VelocityIncrement increment{model_->T_body_imu};
 
@@ -183,8 +182,8 @@ void WindowProblem::increment_term(const WindowState& state, const Item& item, s
   }
   add_bias(state, middle, 3, by_bias, term);
   if (layout_.gravity >= 0) {
-    term.add_border(layout_.gravity, 2) = -core::to_s(t2 - t1) * model_->gravity_m_s2 / sigma *
-                                          gravity_direction::tangent(state.gravity_map);
+    term.add_border(layout_.gravity, 2) =
+        -core::to_s(t2 - t1) * model_->gravity_m_s2 / sigma * gravity_direction::tangent(state.gravity_map);
   }
   if (layout_.offset >= 0) term.add_border(layout_.offset, 1) = by_offset;
 }

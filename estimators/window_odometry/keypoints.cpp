@@ -36,6 +36,7 @@ void place(const TimedPoints& points, const core::ParametricTrajectory& trajecto
 LidarFactors lidar_factors(const TimedPoints& points, std::span<const SurfaceMatch> matches, bool distributions) {
   LidarFactors factors;
   factors.distributions = distributions;
+  factors.first.clear();
   std::uint32_t last_stamp = 0;
   for (std::size_t k = 0; k < matches.size(); ++k) {
     if (!matches[k].used) continue;

@@ -60,17 +60,21 @@ std::vector<Time> MotionModel::knots_over(const core::ParametricTrajectory& traj
                                           std::span<const core::ImuSample> imu) const {
   if (settings_.is_sweepwise()) return {};
   const auto* spline = dynamic_cast<const core::SplineTrajectory*>(&trajectory);
-  const Time last = spline != nullptr ? spline->knots().back() : trajectory.end();
+  const Time last = trajectory.end();
+  const std::span<const Time> have = spline != nullptr ? std::span(spline->knots()) : std::span(&last, 1);
   // A spline is settled by knots beyond its end.
   const int beyond = spline != nullptr ? spline->order() : 0;
   if (settings_.knots == "uniform")
-    return core::uniform_knots_after(last, end, core::duration_from_s(settings_.knot_spacing_s), beyond);
-  if (settings_.knots == "imu-excitation")
-    return core::excitation_knots_after(last, end, imu, gravity_m_s2_, beyond);
+    return core::uniform_knots_after(have, end, core::duration_from_s(settings_.knot_spacing_s), beyond);
+  if (settings_.knots == "imu-excitation") {
+    core::ExcitationRule rule;
+    rule.gravity_m_s2 = gravity_m_s2_;
+    return core::excitation_knots_after(have, end, imu, rule, beyond);
+  }
+  if (spline != nullptr) return core::sweep_knots_after(have, end, core::duration_from_s(kSlot_s), beyond);
   std::vector<Time> knots;
-  const Time from = trajectory.end();
   for (int i = 1; i <= settings_.knots_a_sweep; ++i)
-    knots.push_back(from + Duration((end - from).count() * i / settings_.knots_a_sweep));
+    knots.push_back(last + Duration((end - last).count() * i / settings_.knots_a_sweep));
   return knots;
 }
 

@@ -1,6 +1,8 @@
 /// One front end, every motion model: each profile on the same drive through a furnished room.
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <map>
 
 #include "core/config.h"
@@ -16,7 +18,7 @@ namespace {
 
 using core::SE3;
 
-constexpr int kSweeps = 32;
+constexpr int kSweeps = 28;
 
 ComposedOptions composed_profile(const std::string& name) {
   ComposedOptions options;
@@ -74,7 +76,7 @@ class Drive {
   const core::Rig& rig() const { return rig_; }
   core::LidarSweep sweep_of(int k) const {
     const tests::Motion lidar = [&](double t_s) -> SE3 { return motion_(t_s) * rig_.lidars[0].T_body_lidar; };
-    return tests::sweep_of(room_, k, lidar, {.rings = 24, .columns = 256});
+    return tests::sweep_of(room_, k, lidar, {.rings = 24, .columns = 128});
   }
 
  private:
@@ -91,8 +93,8 @@ Outcome outcome_of(const WindowOdometrySettings& settings, const Drive& drive) {
 
 class EveryProfile : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Composed, EveryProfile, testing::ValuesIn(ComposedOptions::profiles()),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& tested) {
+                           std::string name = tested.param;
                            for (char& c : name)
                              if (c == '-') c = '_';
                            return name;
@@ -102,12 +104,14 @@ TEST_P(EveryProfile, FollowsADriveThroughARoom) {
   const Outcome outcome = outcome_of(composed_profile(GetParam()), Drive());
   EXPECT_EQ(outcome.lost, 0);
   const bool with_imu = GetParam().find("imu") != std::string::npos;
-  // Without an IMU the first sweep starts it; with one, the first after a second of rest.
-  EXPECT_EQ(outcome.initialising, with_imu ? 11 : 0);
+  // Without an IMU the first sweep starts it; with one, the first that begins a second of rest later.
+  EXPECT_EQ(outcome.initialising, with_imu ? 10 : 0);
   EXPECT_EQ(outcome.ok, kSweeps - outcome.initialising);
-  // A rigid sweep is wrong by the motion within it, 0.1 to 0.2 m here; the others are to see most of it.
-  EXPECT_LT(outcome.end_error_m, GetParam() == "rigid" ? 0.3 : 0.1);
-  EXPECT_LT(outcome.deskew_rms_m, GetParam() == "rigid" ? 0.5 : 0.1);
+  // A rigid sweep is wrong by the motion within it, 0.1 to 0.2 m here, one with the last twist by how that changes; the
+  // others are to see most of it.
+  const bool blind = GetParam() == "rigid" || GetParam() == "constant-velocity";
+  EXPECT_LT(outcome.end_error_m, blind ? 0.3 : 0.1);
+  EXPECT_LT(outcome.deskew_rms_m, blind ? 0.5 : 0.1);
 }
 
 TEST(Composed, ModelsThatMoveWithinASweepDeskewBetterThanARigidOne) {
@@ -245,7 +249,7 @@ TEST(SteamLio, UsesTheImuInEveryProfile) {
     options.set_profile(name);
     const Outcome outcome = outcome_of(options, Drive());
     EXPECT_EQ(outcome.lost, 0) << name;
-    EXPECT_EQ(outcome.initialising, 11) << name;
+    EXPECT_EQ(outcome.initialising, 10) << name;
     EXPECT_LT(outcome.end_error_m, 0.15) << name;
   }
 }
