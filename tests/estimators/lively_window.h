@@ -93,7 +93,6 @@ inline LidarFactors lively_factors(const core::Trajectory& truth, core::Time beg
   const core::RandomStream stream(seed, "test/factors");
   LidarFactors factors;
   factors.distributions = distributions;
-  factors.first.push_back(0);
   std::uint64_t draw = 0;
   const auto vector = [&](std::uint32_t j) {
     return Eigen::Vector3d(stream.normal(draw, 3 * j), stream.normal(draw, 3 * j + 1), stream.normal(draw, 3 * j + 2));
