@@ -158,6 +158,7 @@ Window noisy_window(Lively kind, int knots, bool free_offset) {
   WindowState state;
   state.trajectory = truth->clone();
   state.biases = {{kLivelyBegin, Vector6::Zero()}, {kLivelyBegin + std::chrono::milliseconds(400), Vector6::Zero()}};
+  if (!free_offset) state.imu_offset_s = kOffset_s;
   Window window(model, std::move(state));
   add_ideal_readings(window, *truth, Vector3d(0.05, -0.08, -1).normalized(), kLivelyBegin, truth->end(),
                      Duration(5'000'000));
