@@ -2,8 +2,8 @@
 ///
 /// A residual knows its Jacobian by the state at its time, a trajectory knows how that state depends on its parameters;
 /// whoever chains the two makes any residual work on any trajectory. Parameters come in blocks of one size, in order of
-/// time: a control point (6), a pose (6), a knot of a Gaussian process (12 or 18). What holds at a time depends on a run of
-/// neighbouring blocks, so that normal equations are banded.
+/// time: a control point (6), a pose (6), a knot of a Gaussian process (12 or 18). What holds at a time depends on a
+/// run of neighbouring blocks, so that normal equations are banded.
 #pragma once
 
 #include <Eigen/Core>
@@ -66,8 +66,8 @@ class ParametricTrajectory : public SmoothTrajectory {
 
   /// Throws OutOfSpan where covers(t) is false.
   virtual void jet(Time t, Derivative upto, StateJet& jet) const = 0;
-  /// d(state)/dt in the state's tangent: (R^T v, omega), a, alpha, jerk, d(alpha)/dt; rows as filled by `upto`. It is the
-  /// Jacobian by a shift of time.
+  /// d(state)/dt in the state's tangent: (R^T v, omega), a, alpha, jerk, d(alpha)/dt; rows as filled by `upto`. It is
+  /// the Jacobian by a shift of time.
   virtual StateVector rate(Time t, Derivative upto) const = 0;
   /// Poses at many times, ascending (equal ones allowed), faster than one by one and to the same bits.
   virtual void poses(std::span<const Time> ascending, std::span<SE3> T_world_body) const;

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/gp_segment.h"
+#include "core/spline_segment.h"
 
 namespace tarmac::core {
 namespace {
@@ -111,6 +112,7 @@ Segment Segment::sampled(SegmentModel model, std::vector<Time> times, std::vecto
 }
 
 SE3 Segment::pose(Time t) const {
+  if (is_spline(model)) return spline_segment_pose(*this, t);
   if (is_gp(model)) return gp_segment_pose(*this, t);
   const Bracket b = bracket(*this, t);
   if (is_held(model) || b.first == b.second) return poses[b.first];
@@ -119,6 +121,7 @@ SE3 Segment::pose(Time t) const {
 }
 
 SE3 Segment::pose(Time t, std::vector<BlockJacobian>& jacobians) const {
+  if (is_spline(model)) return spline_segment_pose(*this, t, jacobians);
   if (is_gp(model)) return gp_segment_pose(*this, t, jacobians);
   const Bracket b = bracket(*this, t);
   jacobians.clear();

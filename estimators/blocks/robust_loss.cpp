@@ -28,6 +28,17 @@ RobustLoss::Value tolerant(double s, double c, double t) {
   return {c * (softplus(x) - softplus(-t / c)), first, first * (1 - first) / c};
 }
 
+RobustLoss::Value geman_mcclure(double s, double c2) {
+  const double shrink = c2 / (c2 + s);
+  return {s * shrink, shrink * shrink, -2 * shrink * shrink / (c2 + s)};
+}
+
+RobustLoss::Value dynamic_covariance_scaling(double s, double c2) {
+  if (s <= c2) return {s, 1, 0};
+  const double shrink = 2 * c2 / (c2 + s);
+  return {3 * c2 - 2 * c2 * shrink, shrink * shrink, -2 * shrink * shrink / (c2 + s)};
+}
+
 }  // namespace
 
 Loss loss_named(const std::string& name) {
@@ -36,6 +47,8 @@ Loss loss_named(const std::string& name) {
   if (name == "huber") return Loss::huber;
   if (name == "tolerant") return Loss::tolerant;
   if (name == "truncated") return Loss::truncated;
+  if (name == "geman-mcclure") return Loss::geman_mcclure;
+  if (name == "dcs") return Loss::dcs;
   throw std::invalid_argument("no such loss: " + name);
 }
 
@@ -51,6 +64,10 @@ RobustLoss::Value RobustLoss::operator()(double s) const {
       return tolerant(s, scale, tolerance);
     case Loss::truncated:
       return s < scale * scale ? Value{s, 1, 0} : Value{scale * scale, 0, 0};
+    case Loss::geman_mcclure:
+      return geman_mcclure(s, scale * scale);
+    case Loss::dcs:
+      return dynamic_covariance_scaling(s, scale * scale);
   }
   return {s, 1, 0};
 }

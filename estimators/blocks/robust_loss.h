@@ -5,9 +5,9 @@
 
 namespace tarmac::estimators {
 
-enum class Loss { standard, cauchy, huber, tolerant, truncated };
+enum class Loss { standard, cauchy, huber, tolerant, truncated, geman_mcclure, dcs };
 
-/// Throws std::invalid_argument for another name than standard, cauchy, huber, tolerant, truncated.
+/// Throws std::invalid_argument for another name than standard, cauchy, huber, tolerant, truncated, geman-mcclure, dcs.
 Loss loss_named(const std::string& name);
 
 /// The cost of a residual r is rho(s) / 2 with s = r^2; a normal equation weights it by drho/ds.
@@ -18,6 +18,8 @@ Loss loss_named(const std::string& name);
 ///   sharply
 ///              it turns; both are in the unit of s, as Ceres has it
 ///   truncated  rho = min(s, c^2)
+///   geman-mcclure  rho = c^2 s / (c^2 + s)
+///   dcs        rho = s up to c^2, 3 c^2 - 4 c^4 / (c^2 + s) beyond (dynamic covariance scaling)
 struct RobustLoss {
   Loss kind = Loss::standard;
   double scale = 0.1;       ///< c, above 0

@@ -3,51 +3,9 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <cmath>
-#include <limits>
-
-#include "estimators/blocks/plane_fit.h"
-
 namespace tarmac::estimators {
-namespace {
 
 using Eigen::Vector3d;
-
-Association associate_one(const NearestPointsFinder& finder, const AssociationSettings& settings,
-                          const core::SE3& T_map_body, const Vector3d& p_body_lidar, const Keypoint& keypoint,
-                          const Association& before) {
-  Association a;
-  const Vector3d p_map = T_map_body * keypoint.p_body;
-  NearestPoints neighbours;
-  // The neighbours of the search before are no farther than they were, plus the way that the point has gone.
-  const double expected_m = before.reached_m < 0 ? std::numeric_limits<double>::infinity()
-                                                 : before.reached_m + (p_map - before.searched_at_map).norm() + 1e-9;
-  finder.find(p_map, neighbours, expected_m);
-  if (neighbours.count < settings.min_neighbours) return a;
-  a.searched_at_map = p_map;
-  if (neighbours.count == settings.search.max_points) a.reached_m = neighbours.offset(neighbours.count - 1).norm();
-  const PlaneFit plane = fit_plane(neighbours);
-  const Vector3d to_q = neighbours.offset(settings.farthest_plane_point ? neighbours.count - 1 : 0);
-  a.q_map = p_map + to_q;
-  const Vector3d sensor_map = T_map_body * p_body_lidar;
-  a.n_map = plane.normal.dot(sensor_map - a.q_map) < 0 ? Vector3d(-plane.normal) : plane.normal;
-  a.weight = association_weight(settings, plane.planarity, to_q.norm());
-  const bool in_gate =
-      settings.max_plane_distance_m <= 0 || std::abs(a.n_map.dot(to_q)) < settings.max_plane_distance_m;
-  a.used = in_gate && a.weight > 0;
-  return a;
-}
-
-}  // namespace
-
-double association_weight(const AssociationSettings& settings, double planarity, double distance_m) {
-  const double A = settings.planarity_weight, B = settings.neighbourhood_weight;
-  const double power = settings.planarity_power;
-  const double flat = power == 2 ? planarity * planarity : std::pow(planarity, power);
-  const double near =
-      B > 0 ? std::exp(-distance_m / (settings.neighbourhood_distance_m * settings.min_neighbours)) : 0.0;
-  return (A * flat + B * near) / (A + B);
-}
 
 int associate(const VoxelMap& map, const AssociationSettings& settings, const core::Segment& motion,
               const Vector3d& p_body_lidar, std::span<const Keypoint> keypoints,
@@ -57,8 +15,9 @@ int associate(const VoxelMap& map, const AssociationSettings& settings, const co
   const SegmentSampler sampler(motion);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keypoints.size(), 64), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k) {
-      associations[k] = associate_one(finder, settings, sampler.pose(keypoints[k].alpha), p_body_lidar, keypoints[k],
-                                      associations[k]);
+      const core::SE3 T_map_body = sampler.pose(keypoints[k].alpha);
+      associations[k] = associate_point(finder, settings, T_map_body * keypoints[k].p_body, T_map_body * p_body_lidar,
+                                        associations[k]);
     }
   });
   int used = 0;

@@ -7,6 +7,7 @@
 
 #include "core/trajectory.h"
 #include "estimators/blocks/assembler.h"
+#include "estimators/blocks/plane_association.h"
 #include "estimators/blocks/robust_loss.h"
 
 namespace tarmac::estimators {
@@ -15,18 +16,6 @@ struct Keypoint {
   Eigen::Vector3d p_body = Eigen::Vector3d::Zero();  ///< as measured [m]
   double alpha = 1;                                  ///< place in time between the sweep's begin (0) and end (1)
   std::uint32_t point = 0;                           ///< index into the sweep
-};
-
-/// The plane that a keypoint is drawn to: through q, unit normal n turned towards the sensor.
-struct Association {
-  bool used = false;
-  Eigen::Vector3d q_map = Eigen::Vector3d::Zero();
-  Eigen::Vector3d n_map = Eigen::Vector3d::UnitZ();
-  double weight = 0;  ///< w: the residual is w n^T (p_map - q)
-  /// Where the keypoint was looked up and how far its last neighbour lay: the next search starts from that. Negative:
-  /// there were too few.
-  Eigen::Vector3d searched_at_map = Eigen::Vector3d::Zero();
-  double reached_m = -1;
 };
 
 /// Regularisers, all by the poses of the sweep before. Each enters the cost as N beta |.|^2 / 2, N being the number of

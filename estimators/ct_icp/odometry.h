@@ -10,7 +10,7 @@
 #include "estimators/ct_icp/effort.h"
 #include "estimators/ct_icp/options.h"
 #include "estimators/ct_icp/registration.h"
-#include "estimators/ct_icp/sampling.h"
+#include "estimators/blocks/elastic_sampler.h"
 #include "estimators/ct_icp/sweep_span.h"
 
 namespace tarmac::estimators {

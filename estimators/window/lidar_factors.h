@@ -9,8 +9,8 @@
 
 namespace tarmac::estimators {
 
-/// A point drawn to a plane of the map (information n n^T) or to a distribution (a full 3x3 information), both in units of
-/// 1/lidar_sigma^2: point-to-plane has r = weight n^T (T p - q).
+/// A point drawn to a plane of the map (information n n^T) or to a distribution (a full 3x3 information), both in units
+/// of 1/lidar_sigma^2: point-to-plane has r = weight n^T (T p - q).
 struct LidarFactor {
   Eigen::Vector3d p_body = Eigen::Vector3d::Zero();
   Eigen::Vector3d q_map = Eigen::Vector3d::Zero();
@@ -20,12 +20,12 @@ struct LidarFactor {
   std::uint32_t point = 0;                                     ///< index into the sweep
 };
 
-/// Factors in order of their stamps: those of stamps[i] are factors[first[i]] to factors[first[i + 1]] (exclusive), so that
-/// the trajectory is asked once a stamp.
+/// Factors in order of their stamps: those of stamps[i] are factors[first[i]] to factors[first[i + 1]] (exclusive), so
+/// that the trajectory is asked once a stamp.
 struct LidarFactors {
   bool distributions = false;  ///< sqrt_information counts; else the plane
   std::vector<core::Time> stamps;
-  std::vector<std::uint32_t> first;
+  std::vector<std::uint32_t> first = {0};
   std::vector<LidarFactor> factors;
 };
 

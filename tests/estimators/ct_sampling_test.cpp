@@ -4,7 +4,7 @@
 #include <set>
 #include <tuple>
 
-#include "estimators/ct_icp/sampling.h"
+#include "estimators/blocks/elastic_sampler.h"
 #include "tests/estimators/room_world.h"
 
 namespace tarmac::estimators {

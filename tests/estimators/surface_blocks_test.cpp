@@ -218,13 +218,17 @@ TEST_P(EveryLoss, DerivativesMatchCentralDifferencesAndSmallResidualsCountInFull
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Losses, EveryLoss, testing::Values("standard", "cauchy", "huber", "tolerant", "truncated"));
+INSTANTIATE_TEST_SUITE_P(Losses, EveryLoss,
+                         testing::Values("standard", "cauchy", "huber", "tolerant", "truncated", "geman-mcclure",
+                                         "dcs"));
 
 TEST(RobustLoss, WeightsOfLargeResiduals) {
   EXPECT_DOUBLE_EQ((RobustLoss{Loss::cauchy, 0.1, 0}(0.01).first), 0.5);  // at r = c
   EXPECT_DOUBLE_EQ((RobustLoss{Loss::huber, 0.1, 0}(0.04).first), 0.5);   // at r = 2c
   EXPECT_DOUBLE_EQ((RobustLoss{Loss::truncated, 0.1, 0}(0.04).first), 0);
   EXPECT_DOUBLE_EQ((RobustLoss{Loss::tolerant, 0.1, 0.05}(0.05).first), 0.5);  // at s = t
+  EXPECT_DOUBLE_EQ((RobustLoss{Loss::geman_mcclure, 0.1, 0}(0.01).first), 0.25);  // at r = c
+  EXPECT_DOUBLE_EQ((RobustLoss{Loss::dcs, 0.1, 0}(0.03).first), 0.25);            // at r^2 = 3 c^2
   EXPECT_THROW(loss_named("welsch"), std::invalid_argument);
 }
 

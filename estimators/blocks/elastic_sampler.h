@@ -1,4 +1,4 @@
-/// Which points of a sweep CT-ICP uses.
+/// Which points of a sweep CT-ICP uses, and all that sample as it does.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-#include "estimators/ct_icp/sampling.h"
+#include "estimators/blocks/elastic_sampler.h"
 
 #include <utility>
 

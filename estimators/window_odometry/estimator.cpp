@@ -1,0 +1,53 @@
+#include "estimators/window_odometry/estimator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "estimators/blocks/stopwatch.h"
+#include "estimators/window_odometry/record.h"
+
+namespace tarmac::estimators {
+
+WindowOdometryEstimator::WindowOdometryEstimator(const WindowOdometrySettings& settings,
+                                                 const EstimatorContext& context)
+    : odometry_(settings, context.rig), level_(context.diagnostics), arena_(std::max(1, context.threads)) {}
+
+SweepOutcome WindowOdometryEstimator::add(const core::LidarSweep& sweep) {
+  WindowOdometry::Step step = arena_.execute([&] { return odometry_.add(sweep); });
+  if (!step.started) return initialising_outcome(sweep);
+  started_ = true;
+  SweepOutcome outcome;
+  outcome.stages_ms = std::move(step.stages_ms);
+  Stopwatch stopwatch(outcome.stages_ms);
+  outcome.result = {.index = sweep.index,
+                    .begin = sweep.begin,
+                    .end = sweep.end,
+                    .reference = sweep.end,
+                    .status = sweep.empty() ? core::SweepStatus::empty
+                                            : (step.lost ? core::SweepStatus::lost : core::SweepStatus::ok),
+                    .T_map_body = step.T_map_body_end};
+  outcome.note = note_of(sweep, step);
+  if (level_ != core::DiagnosticsLevel::none) {
+    outcome.diagnostics = record_of(sweep, odometry_, step, level_);
+    stopwatch.lap(kRecordStage);
+  }
+  outcome.diagnostics.index = sweep.index;
+  outcome.motion = {std::move(step.motion)};
+  return outcome;
+}
+
+std::string WindowOdometryEstimator::note_of(const core::LidarSweep&, const WindowOdometry::Step& step) {
+  if (step.clipped_stamps == 0) return {};
+  return fmt::format("{} keypoints' stamps outside the sweep, moved to its begin or end", step.clipped_stamps);
+}
+
+void WindowOdometryEstimator::finish(core::Estimate& estimate) {
+  estimate.gravity_aligned = odometry_.settings().imu.gyro();
+  if (started_) return;
+  estimate.status = core::RunStatus::not_initialised;
+  estimate.message = odometry_.inertial().why_not();
+  if (estimate.message.empty()) estimate.message = "no sweep had a point to start from";
+}
+
+}  // namespace tarmac::estimators

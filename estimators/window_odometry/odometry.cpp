@@ -1,0 +1,199 @@
+#include "estimators/window_odometry/odometry.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "estimators/blocks/stopwatch.h"
+
+namespace tarmac::estimators {
+namespace {
+
+using core::SE3;
+using core::Time;
+using Eigen::Vector3d;
+
+constexpr double kRadPerDeg = 0.017453292519943295;
+
+WindowModel model_of(const WindowOdometrySettings& s, const core::Rig& rig) {
+  WindowModel model;
+  model.gravity_m_s2 = rig.gravity_m_s2;
+  model.lidar_sigma_m = s.lidar.sigma_m;
+  model.lidar_loss = {.kind = loss_named(s.lidar.loss), .scale = s.lidar.loss_scale};
+  if (s.imu.gyro() && !rig.imus.empty()) set_imu(s.imu, rig, model);
+  return model;
+}
+
+Marginalisation rule_named(const std::string& name) {
+  if (name == "eigenvalue") return Marginalisation::eigenvalue;
+  return name == "fix" ? Marginalisation::fix : Marginalisation::plain;
+}
+
+}  // namespace
+
+WindowOdometry::WindowOdometry(const WindowOdometrySettings& settings, const core::Rig& rig)
+    : settings_((settings.check(), settings)),
+      rig_(rig),
+      T_body_lidar_(rig.lidars.at(0).T_body_lidar),
+      model_(settings.motion, rig.gravity_m_s2),
+      sampler_(settings.sampling.random_seed),
+      inertial_(settings.imu, rig),
+      map_(settings.map, settings.lidar) {}
+
+void WindowOdometry::add(const core::ImuSample& sample) {
+  if (!settings_.imu.gyro() || rig_.imus.empty()) return;
+  inertial_.add(sample);
+  core::ImuSample centred = sample;
+  centred.t = sample.t - rig_.imus[0].delay;
+  since_last_.push_back(centred);
+}
+
+WindowOdometry::Step WindowOdometry::add(const core::LidarSweep& sweep) {
+  Step step;
+  if (!window_ && (!inertial_.ready(sweep.begin) || sweep.empty())) {
+    since_last_.clear();
+    return step;
+  }
+  step.started = true;
+  step.first = !window_;
+  Stopwatch stopwatch(step.stages_ms);
+  sampler_.thin_out(sweep, {settings_.sampling.min_range_m, settings_.sampling.max_range_m,
+                            startup() ? settings_.sampling.startup_sample_cell_m : settings_.sampling.sample_cell_m});
+  sampler_.choose_keypoints(startup() ? settings_.sampling.startup_keypoint_cell_m
+                                      : settings_.sampling.keypoint_cell_m);
+  keypoints_ = timed_points(sweep, sampler_.keypoints(), T_body_lidar_);
+  matches_.clear();
+  stopwatch.lap("sampling");
+  if (step.first) start(sweep);
+  grow(sweep);
+  predict();
+  stopwatch.lap("prediction");
+  if (!step.first) register_sweep(sweep, step);
+  stopwatch.lap("icp");
+  step.motion = window_->trajectory().segment(sweep.begin, sweep.end);
+  step.T_map_body_end = window_->trajectory().pose(sweep.end);
+  step.clipped_stamps = keypoints_.clipped;
+  if (!step.lost) past_.back().sample = timed_points(sweep, sampler_.sample(), T_body_lidar_);
+  update_map();
+  stopwatch.lap("map");
+  ++sweeps_;
+  return step;
+}
+
+void WindowOdometry::start(const core::LidarSweep& sweep) {
+  WindowState state;
+  state.trajectory = model_.at_rest(sweep.begin, inertial_.T_map_body());
+  if (settings_.imu.gyro()) state.biases.push_back({sweep.begin, inertial_.biases()});
+  WindowModel model = model_of(settings_, rig_);
+  model_.set_prior(model);
+  window_.emplace(std::move(model), std::move(state));
+}
+
+void WindowOdometry::grow(const core::LidarSweep& sweep) {
+  model_.extend_over(*window_, sweep.begin, sweep.end, since_last_);
+  since_last_.clear();
+  past_.push_back({sweep.index, sweep.begin, sweep.end, {}});
+  if (past_.size() > static_cast<std::size_t>(settings_.window.sweeps)) {
+    past_.pop_front();
+    window_->marginalise_before(past_.front().begin, rule_named(settings_.window.marginalisation),
+                                settings_.window.eigenvalue_threshold);
+  }
+  if (past_.size() == 1 && sweeps_ == 0) {
+    // The start defines the map: its pose is known, its motion nearly so.
+    core::Kinematics mean;
+    mean.T_world_body = inertial_.T_map_body();
+    core::StateVector sigma = core::StateVector::Zero();
+    sigma.head<6>().setConstant(settings_.start_sigma_m);
+    if (settings_.motion.has_velocity()) {
+      sigma.segment<3>(core::state_row::velocity).setConstant(settings_.start_velocity_sigma_m_s);
+      sigma.segment<3>(core::state_row::omega).setConstant(0.2 * settings_.start_velocity_sigma_m_s);
+    }
+    window_->add_anchor(sweep.begin, mean, sigma);
+    if (settings_.imu.gyro()) {
+      core::Vector6 bias_sigma;
+      bias_sigma << Vector3d::Constant(settings_.imu.gyro_bias_sigma_rad_s),
+          Vector3d::Constant(settings_.imu.accel_bias_sigma_m_s2);
+      window_->add_bias_anchor(0, inertial_.biases(), bias_sigma);
+    }
+  } else {
+    model_.add_ties(*window_, sweep.begin, sweep.end);
+  }
+  if (!settings_.imu.gyro()) return;
+  window_->add_bias_knot(sweep.end);
+  for (const ImuReading& reading : inertial_.take_readings(past_.front().begin)) window_->add(reading);
+}
+
+void WindowOdometry::predict() {
+  if (!settings_.imu.gyro()) return;
+  SolveSettings solve;
+  solve.max_iterations = 3;
+  solve.lidar = sweeps_ > 0;  // the sweeps before keep theirs; this one has none yet
+  window_->solve(solve);
+}
+
+void WindowOdometry::register_sweep(const core::LidarSweep& sweep, Step& step) {
+  const SolverSettings& settings = settings_.solver;
+  const int allowed = startup() ? settings.startup_associations : settings.associations;
+  const bool distributions = settings_.lidar.residual == "point-to-distribution";
+  const WindowState predicted = window_->state();
+  std::vector<Vector3d> sensor_map;
+  SE3 begin = window_->trajectory().pose(sweep.begin), end = window_->trajectory().pose(sweep.end);
+  for (step.associations = 0; step.associations < allowed && !step.converged;) {
+    place(keypoints_, window_->trajectory(), T_map_body_, p_map_);
+    sensor_map.resize(keypoints_.size());
+    for (std::size_t k = 0; k < keypoints_.size(); ++k)
+      sensor_map[k] = T_map_body_[keypoints_.stamp[k]] * T_body_lidar_.translation();
+    step.residuals = map_.match(keypoints_.p_body, p_map_, sensor_map, startup(), matches_);
+    if (step.residuals < settings.min_residuals) {
+      step.lost = true;
+      break;
+    }
+    window_->set_lidar(sweep.index, lidar_factors(keypoints_, matches_, distributions));
+    SolveSettings solve;
+    solve.levenberg_marquardt = settings.levenberg_marquardt;
+    solve.max_iterations = settings.iterations;
+    solve.line_search = settings.line_search_from >= 0 && step.associations >= settings.line_search_from;
+    const SolveReport report = window_->solve(solve);
+    ++step.associations;
+    step.solver_steps += report.iterations;
+    if (!report.ok) {
+      step.lost = true;
+      break;
+    }
+    const SE3 new_begin = window_->trajectory().pose(sweep.begin), new_end = window_->trajectory().pose(sweep.end);
+    const double moved_m = (new_begin.translation() - begin.translation()).norm() +
+                           (new_end.translation() - end.translation()).norm();
+    const double turned_rad = core::so3::angle_rad(begin.linear().transpose() * new_begin.linear()) +
+                              core::so3::angle_rad(end.linear().transpose() * new_end.linear());
+    begin = new_begin;
+    end = new_end;
+    step.converged = settings.stop_early && moved_m < settings.convergence_m &&
+                     turned_rad < settings.convergence_deg * kRadPerDeg;
+  }
+  if (!step.lost) return;
+  window_->set_lidar(sweep.index, {});
+  window_->state() = predicted;
+}
+
+core::Matrix6 WindowOdometry::prior_information(const core::LidarSweep& sweep) const {
+  Window without = *window_;
+  without.set_lidar(sweep.index, {});
+  const Eigen::MatrixXd covariance = without.covariance(sweep.end, core::Derivative::pose);
+  if (covariance.rows() != 6) return core::Matrix6::Zero();
+  const Eigen::LDLT<core::Matrix6> ldlt(covariance);
+  if (ldlt.info() != Eigen::Success || !ldlt.isPositive()) return core::Matrix6::Zero();
+  return ldlt.solve(core::Matrix6::Identity());
+}
+
+void WindowOdometry::update_map() {
+  const auto delay = static_cast<std::size_t>(settings_.map.delay_sweeps);
+  map_.remove_far(window_->trajectory().pose(past_.back().end).translation());
+  // The first sweep starts the map at once.
+  if (sweeps_ > 0 && past_.size() <= delay) return;
+  PastSweep& sweep = sweeps_ == 0 ? past_.back() : past_[past_.size() - 1 - delay];
+  if (sweep.sample.size() == 0) return;
+  place(sweep.sample, window_->trajectory(), T_map_body_, p_map_);
+  map_.add(p_map_);
+  sweep.sample = {};
+}
+
+}  // namespace tarmac::estimators

@@ -1,0 +1,258 @@
+/// One front end, every motion model: each profile on the same drive through a furnished room.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <map>
+
+#include "core/config.h"
+#include "core/error.h"
+#include "estimators/composed/options.h"
+#include "estimators/steam/options.h"
+#include "estimators/window_odometry/odometry.h"
+#include "estimators/window_odometry/record.h"
+#include "tests/estimators/inertial_room.h"
+
+namespace tarmac::estimators {
+namespace {
+
+using core::SE3;
+
+constexpr int kSweeps = 28;
+
+ComposedOptions composed_profile(const std::string& name) {
+  ComposedOptions options;
+  options.set_profile(name);
+  // The room is small: a street's cells would leave a few dozen points.
+  options.sampling.sample_cell_m = options.sampling.startup_sample_cell_m = 0.2;
+  options.sampling.keypoint_cell_m = options.sampling.startup_keypoint_cell_m = 0.5;
+  return options;
+}
+
+/// What came out of a drive: RMS over sweeps and times of how far a body point 8 m ahead is off, each sweep aligned to truth
+/// at its end (deskewing), and how far the last end is off in the map.
+struct Outcome {
+  double deskew_rms_m = 0, end_error_m = 0;
+  int ok = 0, lost = 0, initialising = 0;
+};
+
+class Drive {
+ public:
+  explicit Drive(double strength = 1, double imu_offset_s = 0)
+      : motion_([strength](double t_s) { return tests::room_motion(t_s, strength); }),
+        imu_(tests::room_imu(rig_, motion_, 0.1 * kSweeps + 0.05, imu_offset_s)) {}
+
+  Outcome run(WindowOdometry& odometry) const {
+    Outcome outcome;
+    std::size_t next = 0;
+    double sum = 0;
+    int count = 0;
+    SE3 T_map_world = SE3::Identity();
+    bool first = true;
+    for (int k = 0; k < kSweeps; ++k) {
+      const core::LidarSweep sweep = sweep_of(k);
+      while (next < imu_.size() && imu_[next].t <= sweep.end) odometry.add(imu_[next++]);
+      const WindowOdometry::Step step = odometry.add(sweep);
+      if (!step.started) {
+        ++outcome.initialising;
+        continue;
+      }
+      ++(step.lost ? outcome.lost : outcome.ok);
+      if (first) T_map_world = step.T_map_body_end * motion_(core::to_s(sweep.end)).inverse();
+      first = false;
+      const SE3 T_align = step.T_map_body_end * motion_(core::to_s(sweep.end)).inverse();
+      for (int i = 0; i < 10; ++i) {
+        const core::Time t = sweep.begin + core::Duration(i * 10'000'000);
+        const Eigen::Vector3d p(8, 0, 0);
+        sum += (step.motion.pose(t) * p - T_align * motion_(core::to_s(t)) * p).squaredNorm();
+        ++count;
+      }
+      outcome.end_error_m =
+          (T_map_world.inverse() * step.T_map_body_end * motion_(core::to_s(sweep.end)).inverse()).translation().norm();
+    }
+    outcome.deskew_rms_m = std::sqrt(sum / std::max(1, count));
+    return outcome;
+  }
+  const core::Rig& rig() const { return rig_; }
+  core::LidarSweep sweep_of(int k) const {
+    const tests::Motion lidar = [&](double t_s) -> SE3 { return motion_(t_s) * rig_.lidars[0].T_body_lidar; };
+    return tests::sweep_of(room_, k, lidar, {.rings = 24, .columns = 128});
+  }
+
+ private:
+  tests::Room room_;
+  core::Rig rig_ = tests::room_rig();
+  tests::Motion motion_;
+  std::vector<core::ImuSample> imu_;
+};
+
+Outcome outcome_of(const WindowOdometrySettings& settings, const Drive& drive) {
+  WindowOdometry odometry(settings, drive.rig());
+  return drive.run(odometry);
+}
+
+class EveryProfile : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Composed, EveryProfile, testing::ValuesIn(ComposedOptions::profiles()),
+                         [](const auto& tested) {
+                           std::string name = tested.param;
+                           for (char& c : name)
+                             if (c == '-') c = '_';
+                           return name;
+                         });
+
+TEST_P(EveryProfile, FollowsADriveThroughARoom) {
+  const Outcome outcome = outcome_of(composed_profile(GetParam()), Drive());
+  EXPECT_EQ(outcome.lost, 0);
+  const bool with_imu = GetParam().find("imu") != std::string::npos;
+  // Without an IMU the first sweep starts it; with one, the first that begins a second of rest later.
+  EXPECT_EQ(outcome.initialising, with_imu ? 10 : 0);
+  EXPECT_EQ(outcome.ok, kSweeps - outcome.initialising);
+  // A rigid sweep is wrong by the motion within it, 0.1 to 0.2 m here, one with the last twist by how that changes; the
+  // others are to see most of it.
+  const bool blind = GetParam() == "rigid" || GetParam() == "constant-velocity";
+  EXPECT_LT(outcome.end_error_m, blind ? 0.3 : 0.1);
+  EXPECT_LT(outcome.deskew_rms_m, blind ? 0.5 : 0.1);
+}
+
+TEST(Composed, ModelsThatMoveWithinASweepDeskewBetterThanARigidOne) {
+  const Drive drive;
+  const double rigid = outcome_of(composed_profile("rigid"), drive).deskew_rms_m;
+  for (const char* name : {"two-pose-slerp", "spline-50ms", "wnoa", "singer"})
+    EXPECT_LT(outcome_of(composed_profile(name), drive).deskew_rms_m, 0.5 * rigid) << name;
+}
+
+TEST(Composed, TheImuHelpsWhereMotionChangesWithinASweep) {
+  const Drive drive(1.5);
+  const auto ratio = [&](const char* with, const char* without) {
+    return outcome_of(composed_profile(with), drive).deskew_rms_m /
+           outcome_of(composed_profile(without), drive).deskew_rms_m;
+  };
+  EXPECT_LT(ratio("spline-50ms-imu", "spline-50ms"), 1);
+  EXPECT_LT(ratio("singer-imu", "singer"), 1);
+}
+
+TEST(Composed, FindsTheTimeOffsetOfTheImu) {
+  const Drive drive(1.5, 0.008);
+  const ComposedOptions options = composed_profile("spline-25ms-imu-offset");
+  WindowOdometry odometry(options, drive.rig());
+  drive.run(odometry);
+  const double offset_s = odometry.window().state().imu_offset_s;
+  const Eigen::MatrixXd covariance = odometry.window().border_covariance();
+  ASSERT_GT(covariance.rows(), 0);
+  const int column = odometry.window().offset_column();
+  const double sigma_s = std::sqrt(covariance(column, column));
+  // Two seconds of a small room: what its own deviation says, and no worse than a millisecond.
+  EXPECT_NEAR(offset_s, 0.008, 1e-3);
+  EXPECT_LT(std::abs(offset_s - 0.008), 4 * sigma_s);
+}
+
+TEST(Composed, WorksOnDistributions) {
+  ComposedOptions options = composed_profile("wnoa");
+  options.lidar.residual = "point-to-distribution";
+  options.map.kind = "distributions";
+  options.map.max_points_per_voxel = 200;
+  const Outcome outcome = outcome_of(options, Drive());
+  EXPECT_EQ(outcome.lost, 0);
+  EXPECT_LT(outcome.end_error_m, 0.1);
+}
+
+TEST(Composed, RulesOfMarginalisationAgreeOnAnEasyDrive) {
+  for (const char* rule : {"plain", "eigenvalue", "fix"}) {
+    ComposedOptions options = composed_profile("spline-50ms-imu");
+    options.window.marginalisation = rule;
+    const Outcome outcome = outcome_of(options, Drive());
+    EXPECT_EQ(outcome.lost, 0) << rule;
+    EXPECT_LT(outcome.end_error_m, 0.1) << rule;
+  }
+}
+
+TEST(Composed, ASweepWithoutPointsIsLostAndTheNextOneIsNot) {
+  const Drive drive;
+  WindowOdometry odometry(composed_profile("wnoa"), drive.rig());
+  for (int k = 0; k < 12; ++k) {
+    core::LidarSweep sweep = drive.sweep_of(k);
+    if (k == 8) {
+      const core::Time begin = sweep.begin, end = sweep.end;
+      sweep = {};
+      sweep.index = k;
+      sweep.begin = begin;
+      sweep.end = end;
+    }
+    const WindowOdometry::Step step = odometry.add(sweep);
+    EXPECT_EQ(step.lost, k == 8) << k;
+    EXPECT_TRUE(core::se3::all_finite(step.T_map_body_end));
+  }
+}
+
+TEST(Composed, RecordsWhatItSolved) {
+  const Drive drive;
+  WindowOdometry odometry(composed_profile("wnoa"), drive.rig());
+  WindowOdometry::Step step;
+  core::LidarSweep sweep;
+  for (int k = 0; k < 10; ++k) {
+    sweep = drive.sweep_of(k);
+    step = odometry.add(sweep);
+  }
+  const core::SweepDiagnostics record = record_of(sweep, odometry, step, core::DiagnosticsLevel::full);
+  EXPECT_EQ(record.residuals, step.residuals);
+  EXPECT_EQ(record.rows.size(), static_cast<std::size_t>(step.residuals));
+  EXPECT_TRUE(record.rows_are_surface);
+  // Every direction is seen in a room, and the window knows something without this sweep's points too.
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<core::Matrix6>(record.H_data).eigenvalues()[0], 1);
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<core::Matrix6>(record.H_prior).eigenvalues()[0], 0);
+}
+
+struct Contradiction {
+  const char* yaml;
+  const char* names;
+};
+class ComposedRefuses : public testing::TestWithParam<Contradiction> {};
+INSTANTIATE_TEST_SUITE_P(
+    Contradictions, ComposedRefuses,
+    testing::Values(Contradiction{"{profile: rigid, imu: {use: gyro}}", "imu.use"},
+                    Contradiction{"{profile: rigid, window: {sweeps: 3}}", "window.sweeps"},
+                    Contradiction{"{profile: two-pose-slerp, imu: {use: gyro-accel}}", "imu.use"},
+                    Contradiction{"{profile: wnoa-imu, imu: {accel_as_increments: false}}", "accel_as_increments"},
+                    Contradiction{"{profile: wnoa, motion: {knots: imu-excitation}}", "motion.knots"},
+                    Contradiction{"{profile: spline-50ms, motion: {knots: imu-excitation}}", "motion.knots"},
+                    Contradiction{"{map: {kind: distributions}}", "map.kind"},
+                    Contradiction{"{map: {delay_sweeps: 2}, window: {sweeps: 2}}", "map.delay_sweeps"},
+                    Contradiction{"{lidar: {min_neighbours: 30}}", "lidar.min_neighbours"},
+                    Contradiction{"{sampling: {min_range_m: 200}}", "sampling.min_range_m"},
+                    Contradiction{"{imu: {use: auto}}", "imu.use"}));
+
+TEST_P(ComposedRefuses, SettingsThatContradictEachOther) {
+  ComposedOptions options;
+  core::ConfigNode::parse(GetParam().yaml, "test.yaml").read(options);
+  try {
+    WindowOdometry odometry(options, tests::room_rig());
+    FAIL() << "was taken: " << GetParam().yaml;
+  } catch (const core::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(GetParam().names), std::string::npos) << error.what();
+  }
+}
+
+TEST(SteamLo, ASweepEntersTheMapOneSweepLater) {
+  const Drive drive;
+  SteamLoOptions options;
+  options.set_profile("newer-college");
+  WindowOdometry odometry(options, drive.rig());
+  EXPECT_EQ(options.map.delay_sweeps, 1);
+  const Outcome outcome = drive.run(odometry);
+  EXPECT_EQ(outcome.lost, 0);
+  EXPECT_LT(outcome.end_error_m, 0.15);
+}
+
+TEST(SteamLio, UsesTheImuInEveryProfile) {
+  for (const char* name : {"newer-college", "newer-college-singer"}) {
+    SteamLioOptions options;
+    options.set_profile(name);
+    const Outcome outcome = outcome_of(options, Drive());
+    EXPECT_EQ(outcome.lost, 0) << name;
+    EXPECT_EQ(outcome.initialising, 10) << name;
+    EXPECT_LT(outcome.end_error_m, 0.15) << name;
+  }
+}
+
+}  // namespace
+}  // namespace tarmac::estimators
