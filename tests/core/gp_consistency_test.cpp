@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 #include "tests/core/gp_batch.h"
 #include "tests/core/gp_examples.h"
