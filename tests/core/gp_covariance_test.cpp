@@ -302,6 +302,41 @@ TEST_P(EveryProcessClaims, CovarianceAtAKnotIsThatKnots) {
   EXPECT_THROW(trajectory.covariance(trajectory.end() + Duration(1), joint), OutOfSpan);
 }
 
+/// Both knots held, half a radian turned on the way: what is left of the process comes by how the state depends on
+/// gamma.
+TEST_P(EveryProcessClaims, BetweenHeldKnotsOnlyTheProcessIsLeft) {
+  const GpPrior prior = this->prior();
+  const GpTrajectory trajectory = tests::random_gp(prior, 4, 2, 1.0);
+  const int size = prior.size(), order = prior.order();
+  const double d = 0.06;
+  const GpInterval interval(prior.model, group_axes(prior), trajectory.knots()[0], trajectory.knots()[1]);
+  const GpLocal local = interval.local(d, interval.weights(d));
+  const auto state_at = [&](int k, double step) {
+    GpLocal other = local;
+    if (k >= 0) other.row[static_cast<std::size_t>(k / 6)][k % 6] += step;
+    return state_of(prior.model, trajectory.knots()[0].T_world_body, other);
+  };
+  Eigen::MatrixXd M(size, size), left = Eigen::MatrixXd::Zero(size, size);
+  constexpr double h = 1e-5;
+  for (int k = 0; k < size; ++k) {
+    M.col(k) = (tests::perturbation(state_at(-1, 0), state_at(k, h), size) -
+                tests::perturbation(state_at(-1, 0), state_at(k, -h), size)) /
+               (2 * h);
+  }
+  for (int axis = 0; axis < 6; ++axis) {
+    const GpBlock noise =
+        prior.qc[axis] * GpAxis(prior.model, prior.rate[axis], interval.duration_s()).conditional_noise(d);
+    for (int i = 0; i < order; ++i) {
+      for (int j = 0; j < order; ++j) left(6 * i + axis, 6 * j + axis) = noise(i, j);
+    }
+  }
+  const GpCovariance found =
+      trajectory.covariance(trajectory.begin() + duration_from_s(d), Eigen::MatrixXd::Zero(2 * size, 2 * size));
+  const auto [low, high] = ratios(found.P, M * left * M.transpose());
+  EXPECT_NEAR(low, 1, 1e-6);
+  EXPECT_NEAR(high, 1, 1e-6);
+}
+
 TEST_P(EveryProcessClaims, ACovarianceThatIsNoneIsProjectedAndSaysSo) {
   const GpTrajectory trajectory = tests::random_gp(prior(), 2, 2, 0.2);
   const int size = trajectory.block_size();
