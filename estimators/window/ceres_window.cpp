@@ -279,17 +279,17 @@ void add_marginal_prior(const WindowProblem& problem, Increments& increments, ce
   out.AddResidualBlock(new MarginalCost(prior, increments, scalars, blocks), nullptr, parameters);
 }
 
-ceres::Solver::Options solver_options(const CeresSettings& settings) {
+ceres::Solver::Options solver_options(const SolveSettings& settings, CeresDamping damping) {
   ceres::Solver::Options options;
   options.max_num_iterations = settings.max_iterations;
   options.max_solver_time_in_seconds = 1e9;
   options.num_threads = 1;
   options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
   options.logging_type = ceres::SILENT;
-  options.function_tolerance = settings.function_tolerance;
-  options.parameter_tolerance = settings.parameter_tolerance;
+  options.function_tolerance = settings.relative_decrease;
+  options.parameter_tolerance = 1e-14;
   options.gradient_tolerance = 1e-14;
-  options.initial_trust_region_radius = settings.initial_radius;
+  options.initial_trust_region_radius = 1 / settings.initial_lambda;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   for (const auto library : {ceres::SUITE_SPARSE, ceres::EIGEN_SPARSE}) {
     if (!ceres::IsSparseLinearAlgebraLibraryTypeAvailable(library)) continue;
@@ -297,7 +297,7 @@ ceres::Solver::Options solver_options(const CeresSettings& settings) {
     options.sparse_linear_algebra_library_type = library;
     break;
   }
-  if (settings.identity_damping) {
+  if (damping == CeresDamping::identity) {
     options.jacobi_scaling = false;
     options.min_lm_diagonal = options.max_lm_diagonal = 1;
   }
@@ -306,9 +306,11 @@ ceres::Solver::Options solver_options(const CeresSettings& settings) {
 
 }  // namespace
 
-SolveReport solve_with_ceres(Window& window, const CeresSettings& settings) {
+SolveReport solve_with_ceres(Window& window, const SolveSettings& settings, CeresDamping damping) {
   check(window.model(), window.trajectory());
-  const WindowProblem problem = window.problem();
+  WindowProblem problem = window.problem();
+  if (!settings.lidar)
+    problem.keep([](const auto&) { return true; }, [](const WindowProblem::Stamp&) { return false; });
   Increments increments(window.state(), problem.layout());
   Source source(problem, increments);
   LossAdaptor accel_loss(window.model().accel_loss), lidar_loss(window.model().lidar_loss);
@@ -322,7 +324,7 @@ SolveReport solve_with_ceres(Window& window, const CeresSettings& settings) {
   add_marginal_prior(problem, increments, ceres_problem);
 
   ceres::Solver::Summary summary;
-  ceres::Solve(solver_options(settings), &ceres_problem, &summary);
+  ceres::Solve(solver_options(settings, damping), &ceres_problem, &summary);
   increments.update();
   SolveReport report;
   report.iterations = static_cast<int>(summary.iterations.size()) - 1;

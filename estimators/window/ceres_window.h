@@ -5,21 +5,18 @@
 
 namespace tarmac::estimators {
 
-struct CeresSettings {
-  int max_iterations = 50;
-  /// Relative fall of the cost, and relative size of a step, below which it ends.
-  double function_tolerance = 1e-10, parameter_tolerance = 1e-10;
-  double initial_radius = 1e4;  ///< of the trust region: the first lambda is 1 over it
-  /// Damping by lambda I instead of lambda diag(H) scaled: for comparison with BandedSystem::solve_with_identity.
-  bool identity_damping = false;
-};
+/// What Ceres's damping multiplies: the diagonal of its scaled normal equations, or the identity (for comparison with
+/// BandedSystem::solve_with_identity).
+enum class CeresDamping : std::uint8_t { diagonal, identity };
 
 /// Levenberg-Marquardt on all unknowns of the window, one thread, no time limit; robust losses as Ceres corrects for
-/// them (to second order). Unknowns are increments of the present state, value (+) d, with exact Jacobians by d.
+/// them (to second order). Unknowns are increments of the present state, value (+) d, with exact Jacobians by d. Of the
+/// settings, max_iterations, initial_lambda (one over the trust region's radius), relative_decrease and `lidar` count.
 ///
 /// What a residual depends on is settled at the start: where a free time offset moves a reading by more than one block
 /// of the trajectory, its Jacobian loses the columns beyond, its value stays exact. ok = false leaves the state as it
 /// was.
-SolveReport solve_with_ceres(Window& window, const CeresSettings& settings);
+SolveReport solve_with_ceres(Window& window, const SolveSettings& settings,
+                             CeresDamping damping = CeresDamping::diagonal);
 
 }  // namespace tarmac::estimators

@@ -144,7 +144,6 @@ void Window::forget_before(core::Time begin, int bias_knots) {
   for (auto& [sweep, factors] : data_.lidar) {
     LidarFactors kept;
     kept.distributions = factors.distributions;
-    kept.first.push_back(0);
     for (std::size_t i = 0; i < factors.stamps.size(); ++i) {
       if (factors.stamps[i] < begin) continue;
       kept.stamps.push_back(factors.stamps[i]);

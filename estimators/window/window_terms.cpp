@@ -149,9 +149,12 @@ void WindowProblem::increment_term(const WindowState& state, const Item& item, s
   if (t2 <= t1 || !trajectory.covers(t1) || !trajectory.covers(t2)) return;
   const auto samples = increment_samples(data_->readings, state.imu_offset_s, t1, t2, kReach);
   if (samples.empty()) return;
-  double variance = 0;
-  for (const IncrementSample& sample : samples) variance += std::pow(model_->accel_sigma_m_s2 * sample.dt_s, 2);
-  const double sigma = std::sqrt(variance);
+  double squares = 0, squares_by_offset = 0;  // of the shares; the first and the last change with the offset
+  for (const IncrementSample& sample : samples) {
+    squares += sample.dt_s * sample.dt_s;
+    squares_by_offset += 2 * sample.dt_s * sample.dt_by_offset;
+  }
+  const double sigma = model_->accel_sigma_m_s2 * std::sqrt(squares);
   const VelocityIncrement increment{model_->T_body_imu};
 
   Term& term = out.emplace_back();
@@ -185,7 +188,10 @@ void WindowProblem::increment_term(const WindowState& state, const Item& item, s
     term.add_border(layout_.gravity, 2) =
         -core::to_s(t2 - t1) * model_->gravity_m_s2 / sigma * gravity_direction::tangent(state.gravity_map);
   }
-  if (layout_.offset >= 0) term.add_border(layout_.offset, 1) = by_offset;
+  if (layout_.offset >= 0) {
+    by_offset -= squares_by_offset / (2 * squares) * term.e;
+    term.add_border(layout_.offset, 1) = by_offset;
+  }
 }
 
 void WindowProblem::smoothness_term(const WindowState& state, const Item& item, bool jacobians,

