@@ -5,8 +5,9 @@
 /// everywhere here, and varpi = Jr(xi) xi'. The local variables at the knots are therefore
 ///   gamma_1 = (0, varpi_1, varpi'_1)
 ///   gamma_2 = (xi, eta, zeta)   eta = Jr^-1(xi) varpi_2   zeta = Jr^-1(xi) varpi'_2 + 1/2 curly(eta) varpi_2
-/// where d/dt Jr^-1(xi) = 1/2 curly(xi') to first order in xi: the published form, exact only for small xi (stay below
-/// about 0.5 rad between knots). Between the knots gamma is linear in the two (gp_prior.h) and
+/// where d/dt Jr^-1(xi) = 1/2 curly(xi') + O(xi): the published form, exact only for small xi (stay below about 0.5 rad
+/// between knots); the term is -1/4 curly(eta) curly(xi) eta in leading order, where exact would be -1/6. Between the
+/// knots gamma is linear in the two (gp_prior.h) and
 ///   T = T_1 Exp(xi)   varpi = Jr(xi) eta   varpi' = Jr(xi) (zeta - 1/2 curly(eta) varpi),
 /// the inverse of the above, so that both knots are hit. Since eta is exactly the derivative of xi, pose and velocity
 /// are consistent to rounding; varpi' of wnoj and singer differs from the derivative of varpi by O(|xi|). wnoa has no

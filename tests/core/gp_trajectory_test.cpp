@@ -7,7 +7,9 @@
 
 #include "core/error.h"
 #include "core/estimate.h"
+#include "core/lie_derivatives.h"
 #include "tests/core/gp_examples.h"
+#include "tests/core/parametric_laws.h"
 #include "tests/support/numeric.h"
 #include "tests/support/temporary_folder.h"
 
@@ -352,6 +354,36 @@ TEST_P(EveryProcess, ACloneIsItsOwn) {
   clone->retract(Eigen::VectorXd::Constant(clone->parameters(), 0.1));
   EXPECT_GT(pose_difference(clone->pose(at_ms(150)), before), 0.01);
   EXPECT_EQ(trajectory.pose(at_ms(150)).matrix(), before.matrix());
+}
+
+TEST_P(EveryProcess, ObeysTheLawsOfTrajectoriesWithParameters) {
+  const GpTrajectory trajectory = tests::random_gp(prior(), 16, 4, 0.3);
+  for (const double ms : {13.0, 150.0, 271.0}) expect_exact_jet(trajectory, at_ms(ms));
+  // Differences of 0.1 ms: what they miss is the fifth derivative's.
+  for (const double ms : {13.0, 150.0, 271.0}) expect_exact_rate(trajectory, at_ms(ms), 1e-4);
+  expect_consistent_difference(trajectory);
+}
+
+/// zeta = Jr^-1 varpi' + 1/2 curly(eta) varpi. Exact would be (d/dt Jr^-1(xi)) varpi in place of the second term. With
+/// E = curly(eta), E eta = 0 and varpi = eta - 1/2 X eta + ...: the published term is -1/4 E X eta, the exact one d/dt
+/// (1/2 X + 1/12 X^2) varpi = (-1/4 + 1/12) E X eta, up to |xi|^2. So the first is three halves of the second, with its
+/// sign.
+TEST(PublishedAcceleration, IsThreeHalvesOfTheExactTermForSmallTurns) {
+  const GpCase wnoj = tests::every_gp()[1];
+  for (const double angle_rad : {1e-3, 1e-2}) {
+    GpTrajectory trajectory = tests::random_gp(wnoj.prior(), 17, 2, angle_rad);
+    std::vector<GpKnot> knots = trajectory.knots();
+    Vector6 xi = tests::random6(RandomStream(17, "test/published"), 0);
+    xi *= angle_rad / xi.norm();
+    knots[1].T_world_body = knots[0].T_world_body * se3::exp(xi);
+    trajectory = GpTrajectory(wnoj.prior(), knots);
+    const GpInterval interval(GpModel::wnoj, group_axes(wnoj.prior()), knots[0], knots[1]);
+    const Vector6 eta = interval.gamma_2()[1];
+    const Matrix6 J_inverse = se3::right_jacobian_inverse(xi);
+    const Vector6 published = interval.gamma_2()[2] - J_inverse * knots[1].dvarpi;
+    const Vector6 exact = se3::right_jacobian_inverse_derivative(xi, knots[1].varpi) * eta;
+    EXPECT_LT((published - 1.5 * exact).norm(), 3 * angle_rad * exact.norm()) << angle_rad;
+  }
 }
 
 TEST(GpKnot, IsTheKinematicsSeenFromTheBody) {
