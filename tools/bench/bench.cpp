@@ -23,8 +23,11 @@ BenchRows sim_and_movers(const Console& console) {
   return rows;
 }
 
-constexpr Bench kBenches[] = {
-    {"sim", sim_and_movers}, {"estimators", bench_estimators}, {"metrics", bench_metrics}, {"store", bench_store}};
+constexpr Bench kBenches[] = {{"sim", sim_and_movers},
+                              {"estimators", bench_estimators},
+                              {"metrics", bench_metrics},
+                              {"store", bench_store},
+                              {"window", bench_window}};
 
 const Bench& find(const std::string& name) {
   std::vector<std::string> names;
@@ -33,8 +36,8 @@ const Bench& find(const std::string& name) {
     names.emplace_back(bench.name);
   }
   const std::string guess = core::did_you_mean(name, names);
-  throw core::InputError(fmt::format("bench: there is no '{}'{}; there are sim, estimators, metrics and store", name,
-                                     guess.empty() ? "" : fmt::format(" (did you mean '{}'?)", guess)));
+  throw core::InputError(fmt::format("bench: there is no '{}'{}; there are sim, estimators, metrics, store and window",
+                                     name, guess.empty() ? "" : fmt::format(" (did you mean '{}'?)", guess)));
 }
 
 void print_json(const BenchRows& rows) {

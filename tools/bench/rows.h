@@ -25,5 +25,6 @@ BenchRows bench_movers(const Console& console);  ///< part of "sim"
 BenchRows bench_estimators(const Console& console);
 BenchRows bench_metrics(const Console& console);
 BenchRows bench_store(const Console& console);
+BenchRows bench_window(const Console& console);
 
 }  // namespace tarmac::tools
