@@ -56,7 +56,8 @@ GpCovariance GpTrajectory::covariance(Time t, const Eigen::MatrixXd& joint) cons
   const GpInterval& interval = intervals_[k];
   const double d = since_knot(k, t);
   const Derivative upto = highest(prior_);
-  const Eigen::MatrixXd J = jacobians_[k].state(interval, d, upto);
+  GpKnot unused;
+  const Eigen::MatrixXd J = jacobians_[k].state(interval, d, upto, unused);
   const Eigen::MatrixXd M = state_by_gamma(prior_.model, interval.local(d, interval.weights(d)), upto);
   Eigen::MatrixXd between = Eigen::MatrixXd::Zero(size, size);
   for (int axis = 0; axis < 6; ++axis) {

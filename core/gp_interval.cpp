@@ -1,5 +1,6 @@
 #include "core/gp_interval.h"
 
+#include "core/lie_derivatives.h"
 #include "core/stumpff.h"
 
 namespace tarmac::core {
@@ -90,41 +91,42 @@ GpInterval::GpInterval(GpModel model, const GpAxisGroups& groups, const GpKnot& 
 /// xi as a function of d with as few products as there are: its coefficients, the interval's own.
 void GpInterval::fit_curve() {
   const Vector6 &p = gamma_2_[0], v0 = T_ * gamma_1_[1], v1 = T_ * gamma_2_[1];
+  const Vector6 zero = Vector6::Zero();
   if (model_ == GpModel::wnoa) {
-    curve_ = {v0, 3 * p - 2 * v0 - v1, -2 * p + v0 + v1, Vector6::Zero(), Vector6::Zero()};
+    curve_ = {zero, v0, 3 * p - 2 * v0 - v1, -2 * p + v0 + v1, zero, zero};
     return;
   }
+  const Vector6 a0 = T_ * T_ * gamma_1_[2], a1 = T_ * T_ * gamma_2_[2];
   if (model_ == GpModel::wnoj) {
-    const Vector6 a0 = T_ * T_ * gamma_1_[2], a1 = T_ * T_ * gamma_2_[2];
-    curve_ = {v0, 0.5 * a0, 10 * p - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1, -15 * p + 8 * v0 + 7 * v1 + 1.5 * a0 - a1,
+    curve_ = {zero,
+              v0,
+              0.5 * a0,
+              10 * p - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1,
+              -15 * p + 8 * v0 + 7 * v1 + 1.5 * a0 - a1,
               6 * p - 3 * v0 - 3 * v1 + 0.5 * (a1 - a0)};
     return;
   }
-  curve_[0] = gamma_1_[1];
-  curve_[1] = gamma_1_[2];
+  for (const double rate : groups_.rates) singer_.emplace_back(rate, T_);
   for (Eigen::Index k = 0; k < 6; ++k) {
-    const std::size_t group = groups_.group_of_axis[static_cast<std::size_t>(k)];
-    const double rate = groups_.rates[group];
-    const Eigen::Vector3d g1(0, gamma_1_[1][k], gamma_1_[2][k]), g2(p[k], gamma_2_[1][k], gamma_2_[2][k]);
-    const Eigen::Vector3d pull = gp_noise_inverse(model_, rate, T_) * (g2 - gp_transition(model_, rate, T_) * g1);
-    for (std::size_t j = 0; j < 3; ++j) curve_[2 + j][k] = pull[static_cast<Eigen::Index>(j)];
+    const SingerCurve& curve = singer_[groups_.group_of_axis[static_cast<std::size_t>(k)]];
+    const auto c = curve.fit({0, v0[k], a0[k]}, {p[k], v1[k], a1[k]});
+    for (std::size_t j = 0; j < 6; ++j) curve_[j][k] = c[j];
   }
 }
 
 Vector6 GpInterval::xi(double d) const {
   const double r = d / T_;
-  if (model_ == GpModel::wnoa) return r * (curve_[0] + r * (curve_[1] + r * curve_[2]));
-  if (model_ == GpModel::wnoj) {
-    return r * (curve_[0] + r * (curve_[1] + r * (curve_[2] + r * (curve_[3] + r * curve_[4]))));
-  }
-  std::array<std::array<double, 5>, 6> basis;
-  for (std::size_t g = 0; g < axes_.size(); ++g) basis[g] = axes_[g].singer_basis(d);
-  Vector6 out;
+  const auto& c = curve_;
+  if (model_ == GpModel::wnoa) return r * (c[1] + r * (c[2] + r * c[3]));
+  if (model_ == GpModel::wnoj) return r * (c[1] + r * (c[2] + r * (c[3] + r * (c[4] + r * c[5]))));
+  const double s = r - 0.5;
+  Vector6 out = c[0] + s * (c[1] + s * (c[2] + s * c[3]));
+  std::array<double, 6> C, S;
+  for (std::size_t g = 0; g < singer_.size(); ++g) singer_[g].basis(s, C[g], S[g]);
   for (std::size_t k = 0; k < 6; ++k) {
-    const auto& b = basis[groups_.group_of_axis[k]];
+    const std::size_t g = groups_.group_of_axis[k];
     const auto i = static_cast<Eigen::Index>(k);
-    out[i] =
-        b[0] * curve_[0][i] + b[1] * curve_[1][i] + b[2] * curve_[2][i] + b[3] * curve_[3][i] + b[4] * curve_[4][i];
+    out[i] += C[g] * c[4][i] + S[g] * c[5][i];
   }
   return out;
 }
@@ -217,7 +219,16 @@ GpJacobian GpIntervalJacobian::gamma_2() const {
 
 namespace {
 
-using Rows6 = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 36>;
+/// All 6x6 matrices here are [[A, B], [0, C]]: half of a product's terms are zero.
+Matrix6 times(const Matrix6& a, const Matrix6& b) {
+  Matrix6 out;
+  out.topLeftCorner<3, 3>() = a.topLeftCorner<3, 3>().lazyProduct(b.topLeftCorner<3, 3>());
+  out.topRightCorner<3, 3>() = a.topLeftCorner<3, 3>().lazyProduct(b.topRightCorner<3, 3>()) +
+                               a.topRightCorner<3, 3>().lazyProduct(b.bottomRightCorner<3, 3>());
+  out.bottomLeftCorner<3, 3>().setZero();
+  out.bottomRightCorner<3, 3>() = a.bottomRightCorner<3, 3>().lazyProduct(b.bottomRightCorner<3, 3>());
+  return out;
+}
 
 /// The state's rows by gamma's: pose by d(xi), varpi by d(xi) and d(eta), varpi' by all three.
 struct StateChain {
@@ -226,32 +237,36 @@ struct StateChain {
   Matrix6 dvarpi_by_xi, dvarpi_by_eta;  ///< with varpi's own dependence folded in
 };
 
-StateChain chain_of(GpModel model, const GpLocal& g, Derivative upto) {
+/// Also the state itself, without its pose and up to `upto` (its velocity in any case).
+StateChain chain_of(GpModel model, const GpLocal& g, Derivative upto, GpKnot& state) {
   const auto& [xi, eta, zeta, unused] = g.row;
   StateChain c;
   c.Jr = se3::right_jacobian(xi);
+  state.varpi = c.Jr * eta;
+  state.dvarpi.setZero();
   if (upto == Derivative::pose) return c;
   c.varpi_by_xi = se3::right_jacobian_derivative(xi, eta);
   if (upto == Derivative::velocity) return c;
   if (model == GpModel::wnoa) {
     Matrix6 by_xi;
-    se3::right_jacobian_rate(xi, eta, &by_xi, &c.dvarpi_by_eta);
+    state.dvarpi = c.Jr * zeta + se3::right_jacobian_rate(xi, eta, &by_xi, &c.dvarpi_by_eta);
     c.dvarpi_by_xi = se3::right_jacobian_derivative(xi, zeta) + by_xi;
     return c;
   }
   // varpi' = Jr q, q = zeta - 1/2 curly(eta) varpi: dq = d(zeta) + 1/2 curly(varpi) d(eta) - 1/2 curly(eta) d(varpi).
-  const Vector6 varpi = c.Jr * eta;
-  const Vector6 q = zeta - 0.5 * bracket(eta, varpi);
-  const Matrix6 half_eta = 0.5 * se3::curly_hat(eta);
-  c.dvarpi_by_xi = se3::right_jacobian_derivative(xi, q) - c.Jr * half_eta * c.varpi_by_xi;
-  c.dvarpi_by_eta = c.Jr * (0.5 * se3::curly_hat(varpi) - half_eta * c.Jr);
+  const Vector6 q = zeta - 0.5 * bracket(eta, state.varpi);
+  state.dvarpi = c.Jr * q;
+  const Matrix6 half_eta = 0.5 * times(c.Jr, se3::curly_hat(eta));
+  c.dvarpi_by_xi = se3::right_jacobian_derivative(xi, q) - times(half_eta, c.varpi_by_xi);
+  c.dvarpi_by_eta = 0.5 * times(c.Jr, se3::curly_hat(state.varpi)) - times(half_eta, c.Jr);
   return c;
 }
 
 }  // namespace
 
 GpJacobian state_by_gamma(GpModel model, const GpLocal& g, Derivative upto) {
-  const StateChain c = chain_of(model, g, upto);
+  GpKnot unused;
+  const StateChain c = chain_of(model, g, upto, unused);
   const int rows = static_cast<int>(upto) + 1;
   GpJacobian J = GpJacobian::Zero(6 * rows, 6 * rows);
   for (int i = 0; i < rows; ++i) J.block<6, 6>(6 * i, 6 * i) = c.Jr;
@@ -263,34 +278,43 @@ GpJacobian state_by_gamma(GpModel model, const GpLocal& g, Derivative upto) {
   return J;
 }
 
-GpJacobian GpIntervalJacobian::state(const GpInterval& interval, double d, Derivative upto) const {
+GpJacobian GpIntervalJacobian::state(const GpInterval& interval, double d, Derivative upto, GpKnot& state) const {
   const int n = order_, second = 6 * n, rows = static_cast<int>(upto) + 1;
   const GpInterval::Weights w = interval.weights(d);
-  GpLocal g = interval.local(d, w);
-  std::array<Rows6, 3> rows_of_gamma;
-  for (int i = 0; i < rows; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const auto &L = w.Lambda[at], &P = w.Psi[at];
-    Rows6& row = rows_of_gamma[at];
-    row = Rows6::Zero(6, 12 * n);
-    for (int j = 0; j < n; ++j) {
-      const auto k = static_cast<std::size_t>(j);
-      row.middleCols<6>(0) += P[k].asDiagonal() * by_T1_[k];
-      row.middleCols<6>(second) += P[k].asDiagonal() * by_T2_[k];
-      if (j == 0) continue;
-      row.middleCols<6>(6 * j).diagonal() = L[k];
-      row.middleCols<6>(second + 6 * j) += P[k].asDiagonal() * J_inverse_;
-    }
-    if (n == 3) row.middleCols<6>(second + 6) += P[2].asDiagonal() * zeta_by_varpi2_;
-  }
-  const StateChain c = chain_of(interval.model(), g, upto);
+  const GpLocal g = interval.local(d, w);
+  const StateChain c = chain_of(interval.model(), g, upto, state);
+  const SE3 step = se3::exp(g.row[0]);
+  state.T_world_body = interval.pose(d);
   GpJacobian J(6 * rows, 12 * n);
-  J.topRows<6>().noalias() = c.Jr * rows_of_gamma[0];
-  J.topLeftCorner<6, 6>() += se3::adjoint(se3::exp(-g.row[0]));
-  if (rows > 1) J.middleRows<6>(6).noalias() = c.Jr * rows_of_gamma[1] + c.varpi_by_xi * rows_of_gamma[0];
-  if (rows > 2) {
-    J.middleRows<6>(12).noalias() =
-        c.Jr * rows_of_gamma[2] + c.dvarpi_by_eta * rows_of_gamma[1] + c.dvarpi_by_xi * rows_of_gamma[0];
+  // Columns of six one after the other: what moves there moves gamma's rows by `by`, and those the state's.
+  const auto fill = [&](int column, const std::array<Matrix6, 3>& by) {
+    J.block<6, 6>(0, column) = times(c.Jr, by[0]);
+    if (rows > 1) J.block<6, 6>(6, column) = times(c.Jr, by[1]) + times(c.varpi_by_xi, by[0]);
+    if (rows > 2) {
+      J.block<6, 6>(12, column) = times(c.Jr, by[2]) + times(c.dvarpi_by_eta, by[1]) + times(c.dvarpi_by_xi, by[0]);
+    }
+  };
+  const auto scaled = [&](const std::array<Matrix6, 3>& of_gamma_2, std::size_t from) {
+    std::array<Matrix6, 3> by;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(rows); ++i) {
+      by[i] = w.Psi[i][from].asDiagonal() * of_gamma_2[from];
+      for (std::size_t j = from + 1; j < static_cast<std::size_t>(n); ++j) {
+        by[i] += w.Psi[i][j].asDiagonal() * of_gamma_2[j];
+      }
+    }
+    return by;
+  };
+  fill(0, scaled(by_T1_, 0));
+  J.topLeftCorner<6, 6>() += se3::adjoint(step.inverse());
+  fill(second, scaled(by_T2_, 0));
+  fill(second + 6, scaled({Matrix6(), J_inverse_, zeta_by_varpi2_}, 1));
+  if (n == 3) fill(second + 12, scaled({Matrix6(), Matrix6(), J_inverse_}, 2));
+  for (int j = 1; j < n; ++j) {
+    std::array<Matrix6, 3> by;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(rows); ++i) {
+      by[i] = w.Lambda[i][static_cast<std::size_t>(j)].asDiagonal();
+    }
+    fill(6 * j, by);
   }
   return J;
 }

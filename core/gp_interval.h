@@ -66,6 +66,7 @@ class GpInterval {
 
   const std::array<Vector6, 3>& gamma_1() const { return gamma_1_; }
   const std::array<Vector6, 3>& gamma_2() const { return gamma_2_; }
+  const SE3& T_first() const { return T_first_; }
   double duration_s() const { return T_; }
   const GpAxis& axis(int k) const { return axes_[groups_.group_of_axis[static_cast<std::size_t>(k)]]; }
   GpModel model() const { return model_; }
@@ -86,7 +87,8 @@ class GpInterval {
   SE3 T_first_;
   std::vector<GpAxis> axes_;
   std::array<Vector6, 3> gamma_1_, gamma_2_;
-  std::array<Vector6, 5> curve_;  ///< xi as a polynomial of d/T without constant, or by Singer's basis
+  std::vector<SingerCurve> singer_;  ///< one a group; none for the others
+  std::array<Vector6, 6> curve_;     ///< xi: coefficients of a polynomial of d/T, or of Singer's basis
 };
 
 /// gamma_2's Jacobian by both knots, and what follows from it.
@@ -96,14 +98,14 @@ class GpIntervalJacobian {
 
   /// d(gamma_2)/d(knots): 12 x 24 or 18 x 36.
   GpJacobian gamma_2() const;
-  /// Jacobian of state(d) by both knots, 6 (upto + 1) rows.
-  GpJacobian state(const GpInterval& interval, double d, Derivative upto) const;
+  /// The state at d up to `upto` (its velocity in any case), and its Jacobian by both knots, 6 (upto + 1) rows.
+  GpJacobian state(const GpInterval& interval, double d, Derivative upto, GpKnot& state) const;
 
  private:
   int order_;
   Matrix6 J_inverse_;  ///< Jr^-1(xi)
   std::array<Matrix6, 3> by_T1_, by_T2_;
-  Matrix6 zeta_by_varpi2_;
+  Matrix6 zeta_by_varpi2_ = Matrix6::Zero();
 };
 
 }  // namespace tarmac::core

@@ -70,35 +70,20 @@ struct UnitNoise {
   double pp, pv, pa, vv, va, aa;
 };
 
-/// The rows of position only.
-void position_noise(double y, double& pp, double& pv, double& pa) {
+UnitNoise unit_noise(double y) {
+  const double aa = y > 0 ? -std::expm1(-2 * y) / (2 * y) : 1;
   if (y < kSeriesBelow) {
-    static constexpr Series kpp = q_series(2, 2), kpv = q_series(2, 1), kpa = q_series(2, 0);
-    pp = horner(kpp, y);
-    pv = horner(kpv, y);
-    pa = horner(kpa, y);
-    return;
+    static constexpr Series kpp = q_series(2, 2), kpv = q_series(2, 1), kpa = q_series(2, 0), kvv = q_series(1, 1),
+                            kva = q_series(1, 0);
+    return {horner(kpp, y), horner(kpv, y), horner(kpa, y), horner(kvv, y), horner(kva, y), aa};
   }
   const double e = std::exp(-y), e2 = e * e, y2 = y * y, y3 = y2 * y;
-  pp = (1 - e2 + 2 * y + 2 * y3 / 3 - 2 * y2 - 4 * y * e) / (2 * y3 * y2);
-  pv = (e2 + 1 - 2 * e + 2 * y * e - 2 * y + y2) / (2 * y2 * y2);
-  pa = (1 - e2 - 2 * y * e) / (2 * y3);
-}
-
-UnitNoise unit_noise(double y) {
-  UnitNoise q;
-  position_noise(y, q.pp, q.pv, q.pa);
-  q.aa = y > 0 ? -std::expm1(-2 * y) / (2 * y) : 1;
-  if (y < kSeriesBelow) {
-    static constexpr Series kvv = q_series(1, 1), kva = q_series(1, 0);
-    q.vv = horner(kvv, y);
-    q.va = horner(kva, y);
-  } else {
-    const double e = std::exp(-y), e2 = e * e;
-    q.vv = (4 * e - 3 - e2 + 2 * y) / (2 * y * y * y);
-    q.va = (e2 + 1 - 2 * e) / (2 * y * y);
-  }
-  return q;
+  return {(1 - e2 + 2 * y + 2 * y3 / 3 - 2 * y2 - 4 * y * e) / (2 * y3 * y2),
+          (e2 + 1 - 2 * e + 2 * y * e - 2 * y + y2) / (2 * y2 * y2),
+          (1 - e2 - 2 * y * e) / (2 * y3),
+          (4 * e - 3 - e2 + 2 * y) / (2 * y3),
+          (e2 + 1 - 2 * e) / (2 * y2),
+          aa};
 }
 
 GpBlock unit_noise_matrix(GpModel model, double y) {
@@ -293,16 +278,95 @@ GpBlock GpAxis::conditional_noise(double d) const {
   return scale.asDiagonal() * unit.inverse() * scale.asDiagonal();
 }
 
-std::array<double, 5> GpAxis::singer_basis(double d) const {
-  const Decay rest = decay(rate_ * (T_ - d));
-  double pp, pv, pa;
-  position_noise(rate_ * d, pp, pv, pa);
-  const double d2 = d * d, left = T_ - d;
-  pp *= d2 * d2 * d;
-  pv *= d2 * d2;
-  pa *= d2 * d;
-  // [pp pv pa] Phi(T - d)^T: Phi = [1 left rest.p left^2; 0 1 rest.v left; 0 0 rest.a].
-  return {d, decay(rate_ * d).p * d2, pp + left * pv + rest.p * left * left * pa, pv + rest.v * left * pa, rest.a * pa};
+namespace {
+
+/// Up to here t4 and t5 by series in z^2 <= 1; above, their closed forms lose a digit and a half at most.
+constexpr double kCurveSeriesBelow = 2.0;
+
+/// sum over k of x^k / (2k + n)!: t_n(z) = z^n tail(n, z^2), nine terms for x <= 1.
+template <std::size_t n>
+double tail(double x) {
+  static constexpr auto r = reciprocal_factorials();
+  static constexpr std::array<double, 9> c = [] {
+    std::array<double, 9> out{};
+    for (std::size_t k = 0; k < 9; ++k) out[k] = static_cast<double>(r[2 * k + n]);
+    return out;
+  }();
+  double sum = c[8];
+  for (std::size_t k = 8; k-- > 0;) sum = c[k] + x * sum;
+  return sum;
+}
+
+/// t2 to t5 times exp(-y/2), at z = y/2: cosh and sinh less the first terms of their series.
+std::array<double, 4> scaled_tails_at_end(double y) {
+  const double h = y / 2, x = h * h;
+  if (y < kCurveSeriesBelow) {
+    const double E = std::exp(-h);
+    return {E * x * tail<2>(x), E * x * h * tail<3>(x), E * x * x * tail<4>(x), E * x * x * h * tail<5>(x)};
+  }
+  const double E = std::exp(-h), c = 0.5 * (1 + E * E), s = -0.5 * std::expm1(-2 * h);
+  return {c - E, s - h * E, c - (1 + x / 2) * E, s - (h + x * h / 6) * E};
+}
+
+}  // namespace
+
+SingerCurve::SingerCurve(double rate, double T) : y_(rate * T) {
+  // Rows: value, first and second derivative by s at s = -1/2, then at 1/2.
+  Eigen::Matrix<double, 6, 6> hermite = Eigen::Matrix<double, 6, 6>::Zero();
+  for (const int end : {-1, 1}) {
+    const double s = 0.5 * end;
+    auto rows = hermite.middleRows<3>(end < 0 ? 0 : 3);
+    rows.leftCols<4>() << 1, s, s * s, s * s * s, 0, 1, 2 * s, 3 * s * s, 0, 0, 2, 6 * s;
+    double C1 = 8, C2 = 48, S1 = 10, S2 = 80;  // of (2s)^4 and (2s)^5
+    if (y_ > 0) {
+      const auto [t2, t3, t4, t5] = scaled_tails_at_end(y_);
+      C1 = y_ * t3 / t4;
+      C2 = y_ * y_ * t2 / t4;
+      S1 = y_ * t4 / t5;
+      S2 = y_ * y_ * t3 / t5;
+    }
+    rows.col(4) << 1, end * C1, C2;
+    rows.col(5) << end, S1, end * S2;
+  }
+  // Second derivatives reach y^2: rows of one size.
+  const Eigen::Matrix<double, 6, 1> scale = hermite.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
+  const Eigen::Matrix<double, 6, 6> scaled = scale.asDiagonal() * hermite;
+  fit_ = scaled.fullPivLu().inverse() * scale.asDiagonal();
+  if (y_ < kCurveSeriesBelow) {
+    const double x = y_ * y_ / 4;
+    norm_C_ = 16 / tail<4>(x);
+    norm_S_ = 32 / tail<5>(x);
+  } else {
+    const auto [t2, t3, t4, t5] = scaled_tails_at_end(y_);
+    norm_C_ = 1 / t4;
+    norm_S_ = 1 / t5;
+  }
+}
+
+SingerCurve::Coefficients SingerCurve::fit(const Eigen::Vector3d& at_first, const Eigen::Vector3d& at_second) const {
+  Eigen::Matrix<double, 6, 1> ends;
+  ends << at_first, at_second;
+  Coefficients c;
+  Eigen::Map<Eigen::Matrix<double, 6, 1>>(c.data()) = fit_ * ends;
+  return c;
+}
+
+void SingerCurve::basis(double s, double& C, double& S) const {
+  const double z = y_ * s, x = z * z;
+  if (y_ < kCurveSeriesBelow) {
+    const double s2 = s * s, s4 = s2 * s2;
+    if (y_ == 0) {
+      C = 16 * s4;
+      S = 32 * s4 * s;
+      return;
+    }
+    C = norm_C_ * s4 * tail<4>(x);
+    S = norm_S_ * s4 * s * tail<5>(x);
+    return;
+  }
+  const double h = y_ / 2, E = std::exp(-h), up = 0.5 * std::exp(z - h), down = 0.5 * std::exp(-z - h);
+  C = norm_C_ * (up + down - (1 + x / 2) * E);
+  S = norm_S_ * (up - down - (z + z * x / 6) * E);
 }
 
 }  // namespace tarmac::core

@@ -68,14 +68,28 @@ class GpAxis {
   /// Covariance of gamma at d, both knots held, at unit density.
   GpBlock conditional_noise(double d) const;
 
-  /// gamma at d is Phi(d) gamma_1 + Q(d) Phi(T - d)^T Q(T)^-1 (gamma_2 - Phi(T) gamma_1): Singer's first row of it by
-  /// gamma_1's second and third entry and the three of Q(T)^-1 (...). Used where only poses are wanted.
-  std::array<double, 5> singer_basis(double d) const;
-
  private:
   GpModel model_;
   double rate_, T_;
   Eigen::Matrix3d transition_, noise_inverse_;  // of T, Singer only
+};
+
+/// Singer's mean of xi between two knots written as what it is: with s = d/T - 1/2 and y = a T,
+///   xi = c0 + c1 s + c2 s^2 + c3 s^3 + c4 C(s) + c5 S(s)
+///   C = t4(y s)/t4(y/2)   S = t5(y s)/t5(y/2)   t4 = cosh z - 1 - z^2/2   t5 = sinh z - z - z^3/6,
+/// C and S made free of overflow and of cancellation, so that y -> 0 gives wnoj's quintic and y -> inf wnoa's cubic
+/// with a layer at either knot. For the many poses that a sweep asks for: two exponentials or a short series a query.
+class SingerCurve {
+ public:
+  SingerCurve(double rate, double T);
+  using Coefficients = std::array<double, 6>;
+  /// c from xi, T xi', T^2 xi'' at both knots.
+  Coefficients fit(const Eigen::Vector3d& at_first, const Eigen::Vector3d& at_second) const;
+  void basis(double s, double& C, double& S) const;
+
+ private:
+  double y_, norm_C_, norm_S_;
+  Eigen::Matrix<double, 6, 6> fit_;
 };
 
 }  // namespace tarmac::core

@@ -10,11 +10,6 @@
 namespace tarmac::core {
 namespace {
 
-struct Process {
-  GpPrior prior;
-  SegmentModel model;
-};
-
 GpPrior prior_of(const Segment& s) {
   GpPrior prior;
   prior.model = s.model == SegmentModel::gp_wnoa   ? GpModel::wnoa
@@ -59,9 +54,10 @@ SE3 gp_segment_pose(const Segment& s, Time t, std::vector<BlockJacobian>& jacobi
   }
   const GpInterval interval = interval_of(s, i);
   const double d = to_s(t - s.times[i]);
-  const GpJacobian J = GpIntervalJacobian(interval, knot_of(s, i + 1)).state(interval, d, Derivative::pose);
+  GpKnot state;
+  const GpJacobian J = GpIntervalJacobian(interval, knot_of(s, i + 1)).state(interval, d, Derivative::pose, state);
   jacobians = {{block, J.topLeftCorner<6, 6>()}, {block + 1, J.block<6, 6>(0, J.cols() / 2)}};
-  return interval.pose(d);
+  return state.T_world_body;
 }
 
 GpTrajectory GpTrajectory::from_segment(const Segment& segment, const Vector6& qc) {

@@ -135,9 +135,12 @@ void GpTrajectory::jet(Time t, Derivative upto, StateJet& jet) const {
   const std::size_t k = std::min(i, intervals_.size() - 1);
   const double d = since_knot(k, t);
   jet.first = block_size() * static_cast<int>(k);
-  jet.state = at(t);
-  GpKnot s = intervals_[k].state(d);
-  world_rows(s, jacobians_[k].state(intervals_[k], d, upto), jet);
+  GpKnot s;
+  const GpJacobian J = jacobians_[k].state(intervals_[k], d, upto, s);
+  jet.state = kinematics(s);
+  if (t == knots_[i].t) jet.state = at(t);  // a knot is itself, bit for bit
+  if (upto != Derivative::acceleration) jet.state.a_world.setZero();
+  world_rows(s, J, jet);
 }
 
 StateVector GpTrajectory::rate(Time t, Derivative upto) const {

@@ -48,7 +48,8 @@ class GpTrajectory final : public ParametricTrajectory {
   int blocks() const override { return static_cast<int>(knots_.size()); }
   int reach() const override { return 2; }
   Derivative has() const override { return Derivative::acceleration; }
-  /// Columns: both knots' blocks; at a knot that knot's alone, where nothing else matters.
+  /// Columns: both knots' blocks; at a knot that knot's alone, where nothing else matters. Accelerations of jet.state
+  /// are those of at() where they are asked for; else they may be zero.
   void jet(Time t, Derivative upto, StateJet& jet) const override;
   /// Exact for every row, by derivatives of the mean itself; at a knot those of the interval after it (the last: before
   /// it).

@@ -47,15 +47,6 @@ inline Matrix6 right_jacobian(const Vector6& xi) {
 inline Matrix6 right_jacobian_inverse(const Vector6& xi) {
   return left_jacobian_inverse(-xi);
 }
-/// The bracket: curly_hat(a) b = -curly_hat(b) a, and Ad(Exp(xi)) is the matrix exponential of curly_hat(xi).
-Matrix6 curly_hat(const Vector6& xi);
-/// d(Jr(xi) w)/dxi and d(Jr^-1(xi) w)/dxi, exact: Jr and its inverse as polynomials of degree 4 in curly_hat(xi) whose
-/// coefficients depend on the angle alone (lie_derivatives.cpp).
-Matrix6 right_jacobian_derivative(const Vector6& xi, const Vector6& w);
-Matrix6 right_jacobian_inverse_derivative(const Vector6& xi, const Vector6& w);
-/// d/ds of Jr(xi + s w) w at s = 0: what the body-centric velocity Jr(xi) w changes by while xi moves on at w. `by_xi`
-/// and `by_w`, where given, are its Jacobians.
-Vector6 right_jacobian_rate(const Vector6& xi, const Vector6& w, Matrix6* by_xi = nullptr, Matrix6* by_w = nullptr);
 /// The same motion with an exactly orthonormal rotation: call it after every product that accumulates.
 SE3 normalized(const SE3& T);
 /// From a translation [m] and a quaternion x, y, z, w; throws InputError when its norm is off 1 by more than 1e-3.

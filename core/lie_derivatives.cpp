@@ -1,5 +1,3 @@
-/// Derivatives of the Jacobians of SE(3).
-///
 /// X = curly_hat(xi) obeys X^5 + 2 a^2 X^3 + a^4 X = 0, a the angle, so that every power series in X is a polynomial
 /// I + s1 X + s2 X^2 + s3 X^3 + s4 X^4 with coefficients of x = a^2. For the right Jacobian, with Stumpff's functions,
 ///   s1 = -(sigma_2 - x sigma_2')   s2 = sigma_3 - x sigma_3'   s3 = sigma_2'   s4 = -sigma_3',
@@ -7,10 +5,11 @@
 ///   s1 = 1/2   s2 = D - x D'   s3 = 0   s4 = -D'.
 /// Source of the polynomial: Barfoot, State Estimation for Robotics (2017), 7.1.5; the coefficients by Stumpff's
 /// functions and D are derived here from X^(2k+1) = (-1)^(k-1) x^(k-1) (k X^3 + (k-1) x X).
+#include "core/lie_derivatives.h"
+
 #include <array>
 #include <cmath>
 
-#include "core/lie.h"
 #include "core/stumpff.h"
 
 namespace tarmac::core::se3 {

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/knots.h"
+#include "core/spline_fit.h"
 #include "estimators/dead_reckoning/sample_chain.h"
 #include "estimators/window/ceres_window.h"
 
@@ -155,8 +156,9 @@ double BatchSpline::solve_round() {
   SolveSettings settings;
   settings.levenberg_marquardt = true;
   settings.max_iterations = options_.solver_iterations;
-  const SolveReport report =
-      options_.solver == "ceres" ? solve_with_ceres(*window_, settings) : window_->solve(settings);
+  const SolveReport report = options_.solver == "ceres"
+                                 ? solve_with_ceres(*window_, {.max_iterations = options_.solver_iterations})
+                                 : window_->solve(settings);
   if (!report.ok) throw std::runtime_error("the batch's normal equations are singular: too little data for its unknowns");
   double moved_m = 0;
   for (std::size_t k = 0; k < kept_.size(); ++k) {

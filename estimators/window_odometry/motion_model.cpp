@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/gp_trajectory.h"
+#include "core/knots.h"
 #include "core/spline_trajectory.h"
 #include "core/sweepwise_trajectory.h"
 
@@ -13,21 +14,6 @@ namespace {
 using core::Duration;
 using core::SE3;
 using core::Time;
-
-std::vector<Time> uniform_knots(Time begin, Time end, Duration spacing, int order) {
-  std::vector<Time> k;
-  for (int i = -(order - 1); begin + (i - order) * spacing <= end; ++i) k.push_back(begin + i * spacing);
-  return k;
-}
-std::vector<Time> uniform_knots_after(Time last, Time end, Duration spacing, int beyond) {
-  std::vector<Time> k;
-  while (last < end + beyond * spacing) {
-    last += spacing;
-    k.push_back(last);
-    if (beyond == 0 && last >= end) break;
-  }
-  return k;
-}
 
 constexpr double kRadPerDeg = 0.017453292519943295;
 
@@ -57,7 +43,7 @@ std::unique_ptr<core::ParametricTrajectory> MotionModel::at_rest(Time begin, con
         core::duration_from_s(settings_.knots == "uniform" ? settings_.knot_spacing_s : kSlot_s);
     return std::make_unique<core::SplineTrajectory>(
         core::SplineTrajectory::at_rest(kind, settings_.order, T_map_body,
-                                        uniform_knots(begin, begin, spacing, settings_.order)));
+                                        core::uniform_knots(begin, begin, spacing, settings_.order)));
   }
   if (settings_.is_gp()) {
     core::GpPrior prior{gp_named(settings_.model), both(settings_.process_translation, settings_.process_rotation),
@@ -74,17 +60,21 @@ std::vector<Time> MotionModel::knots_over(const core::ParametricTrajectory& traj
                                           std::span<const core::ImuSample> imu) const {
   if (settings_.is_sweepwise()) return {};
   const auto* spline = dynamic_cast<const core::SplineTrajectory*>(&trajectory);
-  const Time last = spline != nullptr ? spline->knots().back() : trajectory.end();
+  const Time last = trajectory.end();
+  const std::span<const Time> have = spline != nullptr ? std::span(spline->knots()) : std::span(&last, 1);
   // A spline is settled by knots beyond its end.
   const int beyond = spline != nullptr ? spline->order() : 0;
   if (settings_.knots == "uniform")
-    return uniform_knots_after(last, end, core::duration_from_s(settings_.knot_spacing_s), beyond);
-  if (settings_.knots == "imu-excitation")
-    return uniform_knots_after(last, end, Duration(50000000), beyond + 0 * static_cast<int>(imu.size()));
+    return core::uniform_knots_after(have, end, core::duration_from_s(settings_.knot_spacing_s), beyond);
+  if (settings_.knots == "imu-excitation") {
+    core::ExcitationRule rule;
+    rule.gravity_m_s2 = gravity_m_s2_;
+    return core::excitation_knots_after(have, end, imu, rule, beyond);
+  }
+  if (spline != nullptr) return core::sweep_knots_after(have, end, core::duration_from_s(kSlot_s), beyond);
   std::vector<Time> knots;
-  const Time from = trajectory.end();
   for (int i = 1; i <= settings_.knots_a_sweep; ++i)
-    knots.push_back(from + Duration((end - from).count() * i / settings_.knots_a_sweep));
+    knots.push_back(last + Duration((end - last).count() * i / settings_.knots_a_sweep));
   return knots;
 }
 
