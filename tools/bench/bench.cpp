@@ -27,7 +27,8 @@ constexpr Bench kBenches[] = {{"sim", sim_and_movers},
                               {"estimators", bench_estimators},
                               {"metrics", bench_metrics},
                               {"store", bench_store},
-                              {"trajectories", bench_trajectories}};
+                              {"trajectories", bench_trajectories},
+                              {"window", bench_window}};
 
 const Bench& find(const std::string& name) {
   std::vector<std::string> names;
@@ -37,8 +38,8 @@ const Bench& find(const std::string& name) {
   }
   const std::string guess = core::did_you_mean(name, names);
   throw core::InputError(
-      fmt::format("bench: there is no '{}'{}; there are sim, estimators, metrics, store and "
-                  "trajectories",
+      fmt::format("bench: there is no '{}'{}; there are sim, estimators, metrics, store, "
+                  "trajectories and window",
                   name, guess.empty() ? "" : fmt::format(" (did you mean '{}'?)", guess)));
 }
 

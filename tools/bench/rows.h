@@ -26,5 +26,6 @@ BenchRows bench_estimators(const Console& console);
 BenchRows bench_metrics(const Console& console);
 BenchRows bench_store(const Console& console);
 BenchRows bench_trajectories(const Console& console);
+BenchRows bench_window(const Console& console);
 
 }  // namespace tarmac::tools
