@@ -183,6 +183,7 @@ void BatchSpline::finish(core::Estimate& estimate) {
     }
   });
   estimate.has_final = true;
+  estimate.message = offset_message(*window_);
   const core::ParametricTrajectory& trajectory = window_->trajectory();
   for (const Kept& sweep : kept_) estimate.final.append(trajectory.segment(sweep.begin, sweep.end));
   for (core::SweepResult& result : estimate.sweeps)

@@ -44,7 +44,10 @@ std::string WindowOdometryEstimator::note_of(const core::LidarSweep&, const Wind
 
 void WindowOdometryEstimator::finish(core::Estimate& estimate) {
   estimate.gravity_aligned = odometry_.settings().imu.gyro();
-  if (started_) return;
+  if (started_) {
+    estimate.message = offset_message(odometry_.window());
+    return;
+  }
   estimate.status = core::RunStatus::not_initialised;
   estimate.message = odometry_.inertial().why_not();
   if (estimate.message.empty()) estimate.message = "no sweep had a point to start from";

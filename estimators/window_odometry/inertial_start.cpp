@@ -1,5 +1,10 @@
 #include "estimators/window_odometry/inertial_start.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
 #include "estimators/dead_reckoning/sample_chain.h"
 
 namespace tarmac::estimators {
@@ -21,6 +26,16 @@ void set_imu(const ImuSettings& settings, const core::Rig& rig, WindowModel& mod
   model.gravity_sigma_rad = settings.gravity_sigma_deg * kRadPerDeg;
   model.free_imu_offset = settings.free_time_offset;
   model.imu_offset_sigma_s = settings.time_offset_sigma_s;
+}
+
+std::string offset_message(const Window& window) {
+  const int column = window.offset_column();
+  if (column < 0) return {};
+  const Eigen::MatrixXd covariance = window.border_covariance();
+  const double sigma_s = covariance.rows() > column ? std::sqrt(covariance(column, column))
+                                                    : std::numeric_limits<double>::infinity();
+  return fmt::format("IMU time offset {:.4f} ms, standard deviation {:.4f} ms", 1e3 * window.state().imu_offset_s,
+                     1e3 * sigma_s);
 }
 
 InertialStart::InertialStart(const ImuSettings& settings, const core::Rig& rig) : in_use_(settings.gyro()) {

@@ -188,7 +188,7 @@ struct SolverSettings {
   int iterations = 3;
   bool levenberg_marquardt = false;
   int line_search_from = -1;
-  double convergence_m = 0.001, convergence_deg = 0.005;
+  double convergence_m = 0.005, convergence_deg = 0.01;
   int min_residuals = 100;
   bool stop_early = true;
 

@@ -139,7 +139,7 @@ struct BaselineArguments {
 int baseline_update_command(const BaselineArguments& arguments, const CommonArguments& common);
 
 struct BenchArguments {
-  std::vector<std::string> benches;  ///< sim, estimators, metrics, store, trajectories; empty = all
+  std::vector<std::string> benches;  ///< sim, estimators, metrics, store, trajectories, window; empty = all
 };
 /// In tools/bench.
 int bench_command(const BenchArguments& arguments, const CommonArguments& common);

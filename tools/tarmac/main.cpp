@@ -235,7 +235,7 @@ void add_commands(CLI::App& app, Arguments& a) {
 
   CLI::App* bench = add(app, a, "bench", "what simulating, estimating and scoring cost on this machine",
                         [&a] { return bench_command(a.bench, a.common); });
-  bench->add_option("benches", a.bench.benches, "sim, estimators, metrics, store, trajectories (default: all)");
+  bench->add_option("benches", a.bench.benches, "sim, estimators, metrics, store, trajectories, window (default: all)");
 
   add_store_commands(app, a);
 
