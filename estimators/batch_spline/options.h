@@ -11,7 +11,7 @@ struct BatchSplineOptions {
   std::string odometry = "auto";
   int order = 4;
   double knot_spacing_s = 0.025;
-  double process_translation = 50, process_rotation = 5;
+  double process_translation = 4, process_rotation = 0.5;
   SamplingSettings sampling;
   MapSettings map;
   LidarSettings lidar;

@@ -64,12 +64,12 @@ void ComposedOptions::set_profile(const std::string& name) {
   if (motion.model == "wnoa" && imu.accel()) imu.accel_as_increments = true;
   // Jerk instead of acceleration drives these two.
   if (motion.model == "wnoj") {
-    motion.process_translation = 5000;
-    motion.process_rotation = 500;
+    motion.process_translation = 400;
+    motion.process_rotation = 50;
   }
   if (motion.model == "singer") {
-    motion.process_translation = 5e5;
-    motion.process_rotation = 5e4;
+    motion.process_translation = 4e4;
+    motion.process_rotation = 5e3;
   }
 }
 

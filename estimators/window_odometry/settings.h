@@ -16,8 +16,8 @@ struct MotionSettings {
   std::string knots = "uniform";
   double knot_spacing_s = 0.1;
   int knots_a_sweep = 1;
-  double process_translation = 50;
-  double process_rotation = 5;
+  double process_translation = 4;
+  double process_rotation = 0.5;
   double singer_rate_translation_hz = 100;
   double singer_rate_rotation_hz = 100;
   double continuity_sigma_m = 0.04;
