@@ -16,19 +16,26 @@ template <class Left, class Right>
 void add_lower(const Left& A, const Right& B, Eigen::MatrixXd& H) {
   const Index n = A.rows(), rows = A.cols();
   for (Index c = 0; c < n; ++c) {
-    auto column = H.col(c).tail(n - c);
+    auto column = H.col(c).segment(c, n - c);
     for (Index r = 0; r < rows; ++r) column += B(c, r) * A.col(r).tail(n - c);
   }
 }
 
-/// The same for six columns of A at once: a column of H is loaded and stored once, not six times.
-template <class Columns>
-void add_lower_six(const Columns& A, const Columns& B, Eigen::MatrixXd& H) {
-  const Index n = A.rows();
-  for (Index c = 0; c < n; ++c) {
-    const Index m = n - c;
-    H.col(c).tail(m) += B(c, 0) * A.col(0).tail(m) + B(c, 1) * A.col(1).tail(m) + B(c, 2) * A.col(2).tail(m) +
-                        B(c, 3) * A.col(3).tail(m) + B(c, 4) * A.col(4).tail(m) + B(c, 5) * A.col(5).tail(m);
+/// The same for six columns, by tiles of 4x4 that stay in registers. Rows come in fours: beyond A's last they are zero,
+/// and H has room for them.
+constexpr Index kTile = 4;
+using SixColumns = Eigen::Matrix<double, core::StateJet::kMaxColumns, 6>;
+static_assert(core::StateJet::kMaxColumns % kTile == 0);
+Index padded(Index n) {
+  return (n + kTile - 1) / kTile * kTile;
+}
+void add_lower_six(const SixColumns& A, const SixColumns& B, Index rows, Eigen::MatrixXd& H) {
+  for (Index c = 0; c < rows; c += kTile) {
+    for (Index r = c; r < rows; r += kTile) {
+      Eigen::Matrix<double, kTile, kTile> tile = A.block<kTile, 1>(r, 0) * B.block<kTile, 1>(c, 0).transpose();
+      for (Index k = 1; k < 6; ++k) tile += A.block<kTile, 1>(r, k) * B.block<kTile, 1>(c, k).transpose();
+      H.block<kTile, kTile>(r, c) += tile;
+    }
   }
 }
 
@@ -65,7 +72,7 @@ LocalSum::Part& LocalSum::part(int first, int count, const Term* term) {
     for (int c = 0; c < border.J.cols(); ++c) fresh.columns.push_back(border.column + c);
   }
   const Index n = count + static_cast<Index>(fresh.columns.size());
-  fresh.H.setZero(n, n);
+  fresh.H.setZero(padded(n), padded(n));
   fresh.g.setZero(n);
   return fresh;
 }
@@ -91,12 +98,20 @@ void LocalSum::add(const Term& term) {
 
 void LocalSum::add_pose(int first, const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& J,
                         const core::Matrix6& H, const core::Vector6& g) {
-  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, core::StateJet::kMaxColumns, 6>;
-  Part& sum = part(first, static_cast<int>(J.cols()), nullptr);
-  const Columns A = J.transpose();
-  const Columns HA = A * H;
-  add_lower_six(A, HA, sum.H);
-  sum.g.noalias() += A * g;
+  const Index n = J.cols(), rows = padded(n);
+  Part& sum = part(first, static_cast<int>(n), nullptr);
+  SixColumns A, HA;
+  for (Index c = 0; c < n; ++c) A.row(c) = J.col(c).head<6>().transpose();
+  for (Index c = n; c < rows; ++c) A.row(c).setZero();
+  for (Index r = 0; r < rows; r += kTile) {
+    for (Index c = 0; c < 6; ++c) {
+      Eigen::Matrix<double, kTile, 1> four = A.block<kTile, 1>(r, 0) * H(0, c);
+      for (Index k = 1; k < 6; ++k) four += A.block<kTile, 1>(r, k) * H(k, c);
+      HA.block<kTile, 1>(r, c) = four;
+    }
+  }
+  add_lower_six(A, HA, rows, sum.H);
+  sum.g.noalias() += A.topRows(n) * g;
 }
 
 void LocalSum::add_to(BandedSystem& system) const {

@@ -27,7 +27,7 @@ class LocalSum {
   struct Part {
     int first = 0, count = 0;
     std::vector<int> columns;
-    Eigen::MatrixXd H;  ///< lower triangle
+    Eigen::MatrixXd H;  ///< lower triangle; has a few rows and columns more than g
     Eigen::VectorXd g;
   };
   Part& part(int first, int count, const Term* term);

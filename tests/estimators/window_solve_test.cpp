@@ -206,7 +206,7 @@ TEST_P(WithCeres, OneStepOfTheSameDampingIsTheSame) {
 
 TEST_P(WithCeres, BothComeToTheSameMinimum) {
   for (const Loss loss : {Loss::standard, Loss::cauchy}) {
-    Window ours = noisy_window(GetParam(), 12, true), theirs = noisy_window(GetParam(), 12, true);
+    Window ours = noisy_window(GetParam(), 9, true), theirs = noisy_window(GetParam(), 9, true);
     for (Window* window : {&ours, &theirs}) {
       window->model().lidar_loss = window->model().accel_loss = {loss, 2, 0};
       ASSERT_TRUE(window->solve(kToTheEnd).ok);
