@@ -69,8 +69,8 @@ SweepOutcome BatchSpline::add(const core::LidarSweep& sweep) {
   SweepOutcome outcome = initialising_outcome(sweep);
   WindowOdometry::Step step = arena_.execute([&] { return odometry_.add(sweep); });
   if (!step.started) return outcome;
-  outcome.result.status = sweep.empty() ? core::SweepStatus::empty
-                                        : (step.lost ? core::SweepStatus::lost : core::SweepStatus::ok);
+  outcome.result.status =
+      sweep.empty() ? core::SweepStatus::empty : (step.lost ? core::SweepStatus::lost : core::SweepStatus::ok);
   outcome.stages_ms = std::move(step.stages_ms);
   outcome.diagnostics.iterations = step.associations;
   outcome.diagnostics.residuals = step.residuals;
@@ -134,8 +134,7 @@ void BatchSpline::match_all(const SurfaceMap& map) {
   for (const Kept& sweep : kept_) {
     place(sweep.keypoints, window_->trajectory(), T_map_body, p_map);
     sensor_map.resize(p_map.size());
-    for (std::size_t k = 0; k < p_map.size(); ++k)
-      sensor_map[k] = T_map_body[sweep.keypoints.stamp[k]] * p_body_lidar;
+    for (std::size_t k = 0; k < p_map.size(); ++k) sensor_map[k] = T_map_body[sweep.keypoints.stamp[k]] * p_body_lidar;
     std::vector<SurfaceMatch> matches;
     map.match(sweep.keypoints.p_body, p_map, sensor_map, false, matches);
     window_->set_lidar(sweep.index, lidar_factors(sweep.keypoints, matches, distributions));
@@ -159,7 +158,8 @@ double BatchSpline::solve_round() {
   const SolveReport report = options_.solver == "ceres"
                                  ? solve_with_ceres(*window_, {.max_iterations = options_.solver_iterations})
                                  : window_->solve(settings);
-  if (!report.ok) throw std::runtime_error("the batch's normal equations are singular: too little data for its unknowns");
+  if (!report.ok)
+    throw std::runtime_error("the batch's normal equations are singular: too little data for its unknowns");
   double moved_m = 0;
   for (std::size_t k = 0; k < kept_.size(); ++k) {
     const SE3 end = window_->trajectory().pose(kept_[k].end);

@@ -13,10 +13,11 @@
 
 namespace tarmac::estimators {
 
-/// While sweeps come in, an odometry places them. At the end a cubic B-spline is fitted to its motion, and then in rounds:
-/// a map is made of all sweeps, every keypoint is matched to it, and all control points, biases, gravity's direction and
-/// (on request) the IMU's time offset are solved for together. `final` only; all sweeps' points are kept in memory.
-/// Source: Furgale, Rehder, Siegwart, IROS 2013, with points on surfaces of the map instead of a known target.
+/// While sweeps come in, an odometry places them. At the end a cubic B-spline is fitted to its motion, and then in
+/// rounds: a map is made of all sweeps, every keypoint is matched to it, and all control points, biases, gravity's
+/// direction and (on request) the IMU's time offset are solved for together. `final` only; all sweeps' points are kept
+/// in memory. Source: Furgale, Rehder, Siegwart, IROS 2013, with points on surfaces of the map instead of a known
+/// target.
 class BatchSpline final : public Estimator {
  public:
   BatchSpline(const BatchSplineOptions& options, const EstimatorContext& context);

@@ -41,8 +41,8 @@ struct BatchSplineOptions {
              "profile of composed that the batch starts from; auto: spline-50ms-imu, or spline-50ms without an IMU");
     v("order", order, "of the spline: 4 is cubic", {.at_least = 4, .at_most = 6});
     v("knot_spacing_s", knot_spacing_s, "of its knots", {.at_least = 0.002, .at_most = 10});
-    v("process_translation", process_translation,
-      "prior: spectral density of white noise on acceleration [m^2/s^3]", {.above = 0});
+    v("process_translation", process_translation, "prior: spectral density of white noise on acceleration [m^2/s^3]",
+      {.above = 0});
     v("process_rotation", process_rotation, "the same of rotation [rad^2/s^3]", {.above = 0});
     v.group("sampling", sampling, "which points are used");
     v.group("map", map, "what sweeps are registered against: made of all of them, anew every round");

@@ -20,9 +20,8 @@ void DistributionMap::add(const Vector3d& p_map) {
 }
 
 void DistributionMap::remove_far(const Vector3d& centre, double radius_m) {
-  std::erase_if(cells_, [&](const auto& entry) {
-    return (entry.second.mean - centre).squaredNorm() >= radius_m * radius_m;
-  });
+  std::erase_if(cells_,
+                [&](const auto& entry) { return (entry.second.mean - centre).squaredNorm() >= radius_m * radius_m; });
 }
 
 std::optional<DistributionMap::Distribution> DistributionMap::nearest(const Vector3d& p_map) const {

@@ -33,10 +33,10 @@ struct AssociationSettings {
 ///   w = (A a2D^power + B exp(-distance / (d k))) / (A + B), k = min_neighbours
 double association_weight(const AssociationSettings& settings, double planarity, double distance_m);
 
-/// Of a point placed at p_map, its sensor at sensor_map: its neighbours in the map, the plane fitted to them, turned towards
-/// the sensor, through the nearest of them, and the weight. Not used: points with too few neighbours, without any
-/// planarity, or off the gate. `before` may be the association of the same point placed elsewhere in the same map, which
-/// saves time; else it is Association().
+/// Of a point placed at p_map, its sensor at sensor_map: its neighbours in the map, the plane fitted to them, turned
+/// towards the sensor, through the nearest of them, and the weight. Not used: points with too few neighbours, without
+/// any planarity, or off the gate. `before` may be the association of the same point placed elsewhere in the same map,
+/// which saves time; else it is Association().
 Association associate_point(const NearestPointsFinder& finder, const AssociationSettings& settings,
                             const Eigen::Vector3d& p_map, const Eigen::Vector3d& sensor_map, const Association& before);
 

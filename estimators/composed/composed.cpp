@@ -15,9 +15,11 @@ std::unique_ptr<Estimator> make(const core::ConfigNode& node, const EstimatorCon
 extern const EstimatorEntry composed;
 const EstimatorEntry composed{
     .name = "composed",
-    .summary = "one front end, any trajectory model: rigid, two-pose, B-spline or Gaussian process, with or without IMU",
-    .source = "the parts' own: Sommer et al. CVPR 2020 (splines), Barfoot et al. RSS 2014 (Gaussian processes), Dellenbach "
-              "et al. ICRA 2022 (front end)",
+    .summary =
+        "one front end, any trajectory model: rigid, two-pose, B-spline or Gaussian process, with or without IMU",
+    .source =
+        "the parts' own: Sommer et al. CVPR 2020 (splines), Barfoot et al. RSS 2014 (Gaussian processes), Dellenbach "
+        "et al. ICRA 2022 (front end)",
     .needs = Needs::lidar,
     .make = make,
     .describe = describe_with<ComposedOptions>,

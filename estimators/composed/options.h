@@ -8,8 +8,8 @@
 
 namespace tarmac::estimators {
 
-/// Settings of a window odometry under a profile's name. The front end (sampling, map, residuals, weights, solver) is the
-/// same in all profiles: what differs is the motion model, its knots, and whether the IMU has a say.
+/// Settings of a window odometry under a profile's name. The front end (sampling, map, residuals, weights, solver) is
+/// the same in all profiles: what differs is the motion model, its knots, and whether the IMU has a say.
 struct ComposedOptions : WindowOdometrySettings {
   std::string profile = "wnoa";
 

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "core/measurements.h"
+#include "estimators/blocks/elastic_sampler.h"
 #include "estimators/blocks/voxel_map.h"
 #include "estimators/ct_icp/effort.h"
 #include "estimators/ct_icp/options.h"
 #include "estimators/ct_icp/registration.h"
-#include "estimators/blocks/elastic_sampler.h"
 #include "estimators/ct_icp/sweep_span.h"
 
 namespace tarmac::estimators {

@@ -113,9 +113,10 @@ void SteamLioOptions::set_profile(const std::string& name) {
 
 void SteamLioOptions::visit(core::OptionVisitor& v) {
   const std::string before = profile;
-  v.choice("profile", profile, {"boreas", "newer-college", "newer-college-singer"},
-           "whose defaults: the published configuration for a car or for a handheld sensor, the latter with white noise on "
-           "acceleration or with Singer's prior; changes all below");
+  v.choice(
+      "profile", profile, {"boreas", "newer-college", "newer-college-singer"},
+      "whose defaults: the published configuration for a car or for a handheld sensor, the latter with white noise on "
+      "acceleration or with Singer's prior; changes all below");
   if (profile != before) set_profile(std::string(profile));
   visit_groups(v);
 }

@@ -16,9 +16,11 @@ std::unique_ptr<Estimator> make(const core::ConfigNode& node, const EstimatorCon
 extern const EstimatorEntry steam_lo;
 const EstimatorEntry steam_lo{
     .name = "steam-lo",
-    .summary = "a Gaussian process with white noise on acceleration, one state a sweep, a sliding window inside the ICP",
-    .source = "Burnett et al., Continuous-Time Radar-Inertial and Lidar-Inertial Odometry using a GP Motion Prior, 2024; "
-              "upstream 819c607",
+    .summary =
+        "a Gaussian process with white noise on acceleration, one state a sweep, a sliding window inside the ICP",
+    .source =
+        "Burnett et al., Continuous-Time Radar-Inertial and Lidar-Inertial Odometry using a GP Motion Prior, 2024; "
+        "upstream 819c607",
     .needs = Needs::lidar,
     .make = make<SteamLoOptions>,
     .describe = describe_with<SteamLoOptions>,

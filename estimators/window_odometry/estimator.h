@@ -1,4 +1,5 @@
-/// An odometry on a window as an estimator of the body's motion: what composed and the published methods built on it share.
+/// An odometry on a window as an estimator of the body's motion: what composed and the published methods built on it
+/// share.
 #pragma once
 
 #include <tbb/task_arena.h>
@@ -8,8 +9,8 @@
 
 namespace tarmac::estimators {
 
-/// T_map_body over each sweep as the window had it when the sweep was done, in the model's own terms. Reference instant: the
-/// sweep's end. With an IMU the map is gravity-aligned.
+/// T_map_body over each sweep as the window had it when the sweep was done, in the model's own terms. Reference
+/// instant: the sweep's end. With an IMU the map is gravity-aligned.
 class WindowOdometryEstimator : public Estimator {
  public:
   WindowOdometryEstimator(const WindowOdometrySettings& settings, const EstimatorContext& context);

@@ -32,8 +32,8 @@ std::string offset_message(const Window& window) {
   const int column = window.offset_column();
   if (column < 0) return {};
   const Eigen::MatrixXd covariance = window.border_covariance();
-  const double sigma_s = covariance.rows() > column ? std::sqrt(covariance(column, column))
-                                                    : std::numeric_limits<double>::infinity();
+  const double sigma_s =
+      covariance.rows() > column ? std::sqrt(covariance(column, column)) : std::numeric_limits<double>::infinity();
   return fmt::format("IMU time offset {:.4f} ms, standard deviation {:.4f} ms", 1e3 * window.state().imu_offset_s,
                      1e3 * sigma_s);
 }

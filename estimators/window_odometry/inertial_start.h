@@ -16,8 +16,8 @@ namespace tarmac::estimators {
 /// The IMU's part of a window's model; the accelerometer's deviation only where `use` says so.
 void set_imu(const ImuSettings& settings, const core::Rig& rig, WindowModel& model);
 
-/// What the window found of the IMU's time offset, with its standard deviation, beside the data sheet's delay; empty where
-/// that is no unknown.
+/// What the window found of the IMU's time offset, with its standard deviation, beside the data sheet's delay; empty
+/// where that is no unknown.
 std::string offset_message(const Window& window);
 
 /// Attitude and biases from a rest, and a queue of readings for the window. Without an IMU it has started from the
@@ -32,8 +32,8 @@ class InertialStart {
   /// Why there is no start, for the run's message.
   std::string why_not() const;
 
-  core::SE3 T_map_body() const;                 ///< at rest: gravity-aligned, the position is the map's origin
-  core::Vector6 biases() const;                 ///< gyro, accelerometer
+  core::SE3 T_map_body() const;  ///< at rest: gravity-aligned, the position is the map's origin
+  core::Vector6 biases() const;  ///< gyro, accelerometer
   /// Readings taken since the last call, those before `from` dropped.
   std::vector<ImuReading> take_readings(core::Time from);
 

@@ -39,11 +39,9 @@ core::GpModel gp_named(const std::string& name) {
 std::unique_ptr<core::ParametricTrajectory> MotionModel::at_rest(Time begin, const SE3& T_map_body) const {
   if (settings_.is_spline()) {
     const auto kind = settings_.model == "spline" ? core::SplineKind::split : core::SplineKind::se3;
-    const Duration spacing =
-        core::duration_from_s(settings_.knots == "uniform" ? settings_.knot_spacing_s : kSlot_s);
-    return std::make_unique<core::SplineTrajectory>(
-        core::SplineTrajectory::at_rest(kind, settings_.order, T_map_body,
-                                        core::uniform_knots(begin, begin, spacing, settings_.order)));
+    const Duration spacing = core::duration_from_s(settings_.knots == "uniform" ? settings_.knot_spacing_s : kSlot_s);
+    return std::make_unique<core::SplineTrajectory>(core::SplineTrajectory::at_rest(
+        kind, settings_.order, T_map_body, core::uniform_knots(begin, begin, spacing, settings_.order)));
   }
   if (settings_.is_gp()) {
     core::GpPrior prior{gp_named(settings_.model), both(settings_.process_translation, settings_.process_rotation),

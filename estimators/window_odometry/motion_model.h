@@ -19,12 +19,13 @@ class MotionModel {
 
   /// At rest at T from `begin` on; covers `begin` at least after the first extend_over().
   std::unique_ptr<core::ParametricTrajectory> at_rest(core::Time begin, const core::SE3& T_map_body) const;
-  /// Grows the window's trajectory over a sweep, by the policy of knots. `imu`: what was measured since the last sweep's end.
+  /// Grows the window's trajectory over a sweep, by the policy of knots. `imu`: what was measured since the last
+  /// sweep's end.
   void extend_over(Window& window, core::Time begin, core::Time end, std::span<const core::ImuSample> imu) const;
   /// The prior of models that have none of their own: smoothness of splines.
   void set_prior(WindowModel& model) const;
-  /// What ties a new sweep of a sweepwise model to the motion before it, what extend() made of it being the mean. Nothing
-  /// for the others.
+  /// What ties a new sweep of a sweepwise model to the motion before it, what extend() made of it being the mean.
+  /// Nothing for the others.
   void add_ties(Window& window, core::Time begin, core::Time end) const;
 
  private:

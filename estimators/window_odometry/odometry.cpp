@@ -160,14 +160,14 @@ void WindowOdometry::register_sweep(const core::LidarSweep& sweep, Step& step) {
       break;
     }
     const SE3 new_begin = window_->trajectory().pose(sweep.begin), new_end = window_->trajectory().pose(sweep.end);
-    const double moved_m = (new_begin.translation() - begin.translation()).norm() +
-                           (new_end.translation() - end.translation()).norm();
+    const double moved_m =
+        (new_begin.translation() - begin.translation()).norm() + (new_end.translation() - end.translation()).norm();
     const double turned_rad = core::so3::angle_rad(begin.linear().transpose() * new_begin.linear()) +
                               core::so3::angle_rad(end.linear().transpose() * new_end.linear());
     begin = new_begin;
     end = new_end;
-    step.converged = settings.stop_early && moved_m < settings.convergence_m &&
-                     turned_rad < settings.convergence_deg * kRadPerDeg;
+    step.converged =
+        settings.stop_early && moved_m < settings.convergence_m && turned_rad < settings.convergence_deg * kRadPerDeg;
   }
   if (!step.lost) return;
   window_->set_lidar(sweep.index, {});

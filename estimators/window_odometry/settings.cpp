@@ -22,8 +22,9 @@ void check_motion(const WindowOdometrySettings& s) {
   if (m.knots == "per-sweep" && m.is_spline() && m.knots_a_sweep > 1)
     refuse("motion.knots_a_sweep: splines take one knot a sweep with per-sweep; use uniform knots for more");
   if (m.is_sweepwise() && s.window.sweeps > 1)
-    refuse(fmt::format("window.sweeps: {} has nothing that ties sweeps together: 1 is all it can use, {} were asked for",
-                       m.model, s.window.sweeps));
+    refuse(
+        fmt::format("window.sweeps: {} has nothing that ties sweeps together: 1 is all it can use, {} were asked for",
+                    m.model, s.window.sweeps));
 }
 
 void check_imu(const WindowOdometrySettings& s) {
@@ -34,8 +35,7 @@ void check_imu(const WindowOdometrySettings& s) {
     refuse(fmt::format("imu.use: {} has no velocity inside a sweep that an IMU could tell of; use none", m.model));
   if (s.imu.accel() && !m.has_acceleration() && !s.imu.accel_as_increments)
     refuse(fmt::format("imu.use: {} has no acceleration of its own: use gyro, or imu.accel_as_increments", m.model));
-  if (s.imu.accel() && m.is_sweepwise())
-    refuse(fmt::format("imu.use: {} has no acceleration: use gyro", m.model));
+  if (s.imu.accel() && m.is_sweepwise()) refuse(fmt::format("imu.use: {} has no acceleration: use gyro", m.model));
 }
 
 }  // namespace
@@ -52,8 +52,9 @@ void WindowOdometrySettings::check() const {
   if ((lidar.residual == "point-to-distribution") != (map.kind == "distributions"))
     refuse(fmt::format("lidar.residual: {} does not go with map.kind {}", lidar.residual, map.kind));
   if (map.delay_sweeps >= window.sweeps)
-    refuse(fmt::format("map.delay_sweeps: {} must be below window.sweeps ({}): a sweep enters the map by its window's states",
-                       map.delay_sweeps, window.sweeps));
+    refuse(fmt::format(
+        "map.delay_sweeps: {} must be below window.sweeps ({}): a sweep enters the map by its window's states",
+        map.delay_sweeps, window.sweeps));
   const double smallest_cell_m = std::min({sampling.sample_cell_m, sampling.startup_sample_cell_m, map.voxel_m});
   if (sampling.max_range_m / smallest_cell_m > 1e8)
     refuse(fmt::format("sampling.max_range_m: {} is too large for cells of {} m: cells are counted in 32 bits",

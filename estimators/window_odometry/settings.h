@@ -87,7 +87,8 @@ struct MapSettings {
     v.choice("kind", kind, {"points", "distributions"},
              "points in voxels, planes fitted to neighbours; or a normal distribution a voxel");
     v("voxel_m", voxel_m, "edge of a map voxel", {.at_least = 0.01});
-    v("max_points_per_voxel", max_points_per_voxel, "points that a voxel takes at most", {.at_least = 1, .at_most = 1000});
+    v("max_points_per_voxel", max_points_per_voxel, "points that a voxel takes at most",
+      {.at_least = 1, .at_most = 1000});
     v("min_distance_m", min_distance_m, "points nearer than this to another of their voxel are not added (points)",
       {.at_least = 0});
     v("radius_m", radius_m, "voxels farther than this are dropped", {.above = 0});
@@ -113,7 +114,8 @@ struct LidarSettings {
     v("sigma_m", sigma_m, "standard deviation of a residual of full weight", {.above = 0});
     v.choice("loss", loss, {"standard", "cauchy", "huber"}, "robust loss");
     v("loss_scale", loss_scale, "its scale, in standard deviations", {.above = 0});
-    v("max_neighbours", max_neighbours, "map points that a plane is fitted to, at most", {.at_least = 3, .at_most = 64});
+    v("max_neighbours", max_neighbours, "map points that a plane is fitted to, at most",
+      {.at_least = 3, .at_most = 64});
     v("min_neighbours", min_neighbours, "keypoints with fewer are left out", {.at_least = 3, .at_most = 64});
     v("voxel_reach", voxel_reach, "voxels searched each way", {.at_least = 1, .at_most = 8});
     v("startup_voxel_reach", startup_voxel_reach, "the same during start-up", {.at_least = 1, .at_most = 8});
@@ -197,8 +199,8 @@ struct SolverSettings {
     v("startup_associations", startup_associations, "the same during start-up", {.at_least = 1});
     v("iterations", iterations, "steps of the solver an association, at most", {.at_least = 1});
     v("levenberg_marquardt", levenberg_marquardt, "damped steps; else Gauss-Newton");
-    v("line_search_from", line_search_from, "association (from 0) from which steps are halved while the cost rises; -1: never",
-      {.at_least = -1});
+    v("line_search_from", line_search_from,
+      "association (from 0) from which steps are halved while the cost rises; -1: never", {.at_least = -1});
     v("convergence_m", convergence_m, "an association that moves begin and end by less than this together...",
       {.above = 0});
     v("convergence_deg", convergence_deg, "...and turns them by less than this together is the last", {.above = 0});

@@ -53,12 +53,11 @@ int SurfaceMap::match(std::span<const Vector3d> p_body, std::span<const Vector3d
     });
   };
   if (const auto* points = std::get_if<VoxelMap>(&map_)) {
-    const AssociationSettings settings{
-        .search = {.max_points = lidar_.max_neighbours,
-                   .reach = startup ? lidar_.startup_voxel_reach : lidar_.voxel_reach},
-        .min_neighbours = lidar_.min_neighbours,
-        .planarity_power = lidar_.planarity_power,
-        .max_plane_distance_m = lidar_.max_plane_distance_m};
+    const AssociationSettings settings{.search = {.max_points = lidar_.max_neighbours,
+                                                  .reach = startup ? lidar_.startup_voxel_reach : lidar_.voxel_reach},
+                                       .min_neighbours = lidar_.min_neighbours,
+                                       .planarity_power = lidar_.planarity_power,
+                                       .max_plane_distance_m = lidar_.max_plane_distance_m};
     const NearestPointsFinder finder(*points, settings.search);
     each([&](std::size_t k, SurfaceMatch& match) {
       match.association = associate_point(finder, settings, p_map[k], sensor_map[k], match.association);
@@ -69,9 +68,8 @@ int SurfaceMap::match(std::span<const Vector3d> p_body, std::span<const Vector3d
     });
   } else {
     const auto& distributions = std::get<DistributionMap>(map_);
-    each([&](std::size_t k, SurfaceMatch& match) {
-      match_distribution(distributions, p_map[k], sensor_map[k], match);
-    });
+    each(
+        [&](std::size_t k, SurfaceMatch& match) { match_distribution(distributions, p_map[k], sensor_map[k], match); });
   }
   return static_cast<int>(std::count_if(matches.begin(), matches.end(), [](const SurfaceMatch& m) { return m.used; }));
 }

@@ -29,14 +29,15 @@ class SurfaceMap {
   void add(std::span<const Eigen::Vector3d> points_map);
   void remove_far(const Eigen::Vector3d& centre_map);
 
-  /// Matches every keypoint (p_body, placed at p_map, its sensor at sensor_map). Parallel, each for itself; `matches` holds
-  /// those of another placement of the same keypoints in the same map, or default values. @returns how many are used
+  /// Matches every keypoint (p_body, placed at p_map, its sensor at sensor_map). Parallel, each for itself; `matches`
+  /// holds those of another placement of the same keypoints in the same map, or default values. @returns how many are
+  /// used
   int match(std::span<const Eigen::Vector3d> p_body, std::span<const Eigen::Vector3d> p_map,
             std::span<const Eigen::Vector3d> sensor_map, bool startup, std::vector<SurfaceMatch>& matches) const;
 
  private:
-  void match_distribution(const DistributionMap& map, const Eigen::Vector3d& p_map,
-                          const Eigen::Vector3d& sensor_map, SurfaceMatch& match) const;
+  void match_distribution(const DistributionMap& map, const Eigen::Vector3d& p_map, const Eigen::Vector3d& sensor_map,
+                          SurfaceMatch& match) const;
 
   MapSettings map_settings_;
   LidarSettings lidar_;

@@ -13,9 +13,10 @@ inline core::SE3 room_motion(double t_s, double strength = 1) {
   const double u = std::max(0.0, t_s - 1.5);
   const double in = u * u * u * u / (0.02 + u * u * u * u);
   core::SE3 T = core::SE3::Identity();
-  T.linear() = core::so3::exp(strength * in *
-                              Eigen::Vector3d(0.05 * std::sin(9 * u), 0.06 * std::sin(7 * u + 1), 0.5 * std::sin(2.4 * u)));
-  T.translation() = strength * in * Eigen::Vector3d(1.1 * std::sin(2.1 * u), 0.7 * std::sin(1.3 * u), 0.05 * std::sin(8 * u));
+  T.linear() = core::so3::exp(
+      strength * in * Eigen::Vector3d(0.05 * std::sin(9 * u), 0.06 * std::sin(7 * u + 1), 0.5 * std::sin(2.4 * u)));
+  T.translation() =
+      strength * in * Eigen::Vector3d(1.1 * std::sin(2.1 * u), 0.7 * std::sin(1.3 * u), 0.05 * std::sin(8 * u));
   return T;
 }
 
@@ -48,8 +49,8 @@ inline std::vector<core::ImuSample> room_imu(const core::Rig& rig, const Motion&
     sample.t = core::time_from_ns(std::int64_t{k} * 5'000'000);
     sample.gyro_rad_s =
         core::so3::log(((T_world_body(t0) * T_body_imu).inverse() * (T_world_body(t1) * T_body_imu)).linear()) / 0.005;
-    sample.accel_m_s2 = middle.linear().transpose() *
-                        ((velocity(t1) - velocity(t0)) / 0.005 + Eigen::Vector3d(0, 0, rig.gravity_m_s2));
+    sample.accel_m_s2 =
+        middle.linear().transpose() * ((velocity(t1) - velocity(t0)) / 0.005 + Eigen::Vector3d(0, 0, rig.gravity_m_s2));
   }
   return samples;
 }
