@@ -221,12 +221,13 @@ void SweepwiseTrajectory::extend(Time begin, Time end, std::span<const Time>) {
 }
 
 int SweepwiseTrajectory::first_block_at(Time t) const {
-  int gone = 0;
-  for (const Sweep& sweep : sweeps_) {
-    if (sweep.end >= t) break;
-    ++gone;
+  std::size_t gone = 0;
+  for (; gone < sweeps_.size(); ++gone) {
+    // A boundary instant belongs to the later sweep, where there is one that begins there.
+    const bool next_begins = gone + 1 < sweeps_.size() && sweeps_[gone + 1].begin == t;
+    if (sweeps_[gone].end > t || (sweeps_[gone].end == t && !next_begins)) break;
   }
-  return gone * poses_a_sweep();
+  return static_cast<int>(gone) * poses_a_sweep();
 }
 
 void SweepwiseTrajectory::drop(int count) {

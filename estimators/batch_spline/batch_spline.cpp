@@ -55,6 +55,14 @@ BatchSpline::BatchSpline(const BatchSplineOptions& options, const EstimatorConte
       odometry_(first_pass(options, context.rig), context.rig),
       sampler_(options.sampling.random_seed),
       arena_(std::max(1, context.threads)) {
+  if (with_imu_ && !odometry_.settings().imu.gyro())
+    throw core::InputError(
+        fmt::format("odometry: {} uses no IMU, so that the batch has no attitude to start from; take a profile with "
+                    "-imu, or imu.use none",
+                    options.odometry));
+  if (options.lidar.min_neighbours > options.lidar.max_neighbours)
+    throw core::InputError(fmt::format("lidar.min_neighbours: {} must not be above lidar.max_neighbours ({})",
+                                       options.lidar.min_neighbours, options.lidar.max_neighbours));
   if ((options.lidar.residual == "point-to-distribution") != (options.map.kind == "distributions"))
     throw core::InputError(
         fmt::format("lidar.residual: {} does not go with map.kind {}", options.lidar.residual, options.map.kind));
@@ -74,18 +82,20 @@ SweepOutcome BatchSpline::add(const core::LidarSweep& sweep) {
   outcome.stages_ms = std::move(step.stages_ms);
   outcome.diagnostics.iterations = step.associations;
   outcome.diagnostics.residuals = step.residuals;
-  keep(sweep, step.motion);
+  keep(sweep, step);
   return outcome;
 }
 
-void BatchSpline::keep(const core::LidarSweep& sweep, const core::Segment& motion) {
+void BatchSpline::keep(const core::LidarSweep& sweep, const WindowOdometry::Step& step) {
   const SamplingSettings& s = options_.sampling;
   const SE3& T_body_lidar = rig_.lidars.at(0).T_body_lidar;
   sampler_.thin_out(sweep, {s.min_range_m, s.max_range_m, s.sample_cell_m});
   sampler_.choose_keypoints(s.keypoint_cell_m);
   kept_.push_back({sweep.index, sweep.begin, sweep.end, timed_points(sweep, sampler_.keypoints(), T_body_lidar),
                    timed_points(sweep, sampler_.sample(), T_body_lidar)});
-  first_guess_.append(motion);
+  // A lost sweep's place is a guess: its points say nothing of the map.
+  if (step.lost) kept_.back().keypoints = kept_.back().sample = {};
+  first_guess_.append(step.motion);
 }
 
 void BatchSpline::start_window() {
@@ -183,7 +193,7 @@ void BatchSpline::finish(core::Estimate& estimate) {
     }
   });
   estimate.has_final = true;
-  estimate.message = offset_message(*window_);
+  estimate.message = arena_.execute([&] { return offset_message(*window_); });
   const core::ParametricTrajectory& trajectory = window_->trajectory();
   for (const Kept& sweep : kept_) estimate.final.append(trajectory.segment(sweep.begin, sweep.end));
   for (core::SweepResult& result : estimate.sweeps)

@@ -35,7 +35,7 @@ class BatchSpline final : public Estimator {
     core::Time begin, end;
     TimedPoints keypoints, sample;
   };
-  void keep(const core::LidarSweep& sweep, const core::Segment& motion);
+  void keep(const core::LidarSweep& sweep, const WindowOdometry::Step& step);
   void start_window();
   /// One round. @returns how far the sweep's end that moved most has moved [m]
   double solve_round();

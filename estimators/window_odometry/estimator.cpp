@@ -29,7 +29,7 @@ SweepOutcome WindowOdometryEstimator::add(const core::LidarSweep& sweep) {
                     .T_map_body = step.T_map_body_end};
   outcome.note = note_of(sweep, step);
   if (level_ != core::DiagnosticsLevel::none) {
-    outcome.diagnostics = record_of(sweep, odometry_, step, level_);
+    outcome.diagnostics = arena_.execute([&] { return record_of(sweep, odometry_, step, level_); });
     stopwatch.lap(kRecordStage);
   }
   outcome.diagnostics.index = sweep.index;
@@ -45,7 +45,7 @@ std::string WindowOdometryEstimator::note_of(const core::LidarSweep&, const Wind
 void WindowOdometryEstimator::finish(core::Estimate& estimate) {
   estimate.gravity_aligned = odometry_.settings().imu.gyro();
   if (started_) {
-    estimate.message = offset_message(odometry_.window());
+    estimate.message = arena_.execute([&] { return offset_message(odometry_.window()); });
     return;
   }
   estimate.status = core::RunStatus::not_initialised;

@@ -71,8 +71,11 @@ std::vector<Time> MotionModel::knots_over(const core::ParametricTrajectory& traj
   }
   if (spline != nullptr) return core::sweep_knots_after(have, end, core::duration_from_s(kSlot_s), beyond);
   std::vector<Time> knots;
-  for (int i = 1; i <= settings_.knots_a_sweep; ++i)
-    knots.push_back(last + Duration((end - last).count() * i / settings_.knots_a_sweep));
+  if (end <= last) return knots;
+  // A sweep of one packet may be over before two knots are apart.
+  const Duration span = std::max(end - last, core::kGpMinimumSpacing);
+  const auto count = std::clamp<std::int64_t>(span / core::kGpMinimumSpacing, 1, settings_.knots_a_sweep);
+  for (std::int64_t i = 1; i <= count; ++i) knots.push_back(last + Duration(span.count() * i / count));
   return knots;
 }
 
@@ -87,11 +90,11 @@ void MotionModel::set_prior(WindowModel& model) const {
   model.smoothness_rotation = settings_.process_rotation;
 }
 
-void MotionModel::add_ties(Window& window, Time begin, Time end) const {
+void MotionModel::add_ties(Window& window, Time last_end, Time begin, Time end) const {
   if (!settings_.is_sweepwise()) return;
   // White noise on acceleration, as other models have it: over a time d velocity strays by sqrt(q d), position by
   // sqrt(q d^3/3). What extend() predicted is the mean.
-  const double d = core::to_s(end - begin);
+  const double d = std::max(core::to_s(end - last_end), 1e-3), gap = core::to_s(begin - last_end);
   core::StateVector sigma = core::StateVector::Zero();
   if (!settings_.has_velocity()) {
     sigma.head<6>() = (both(settings_.process_translation, settings_.process_rotation) * (d * d * d / 3)).cwiseSqrt();
@@ -99,7 +102,8 @@ void MotionModel::add_ties(Window& window, Time begin, Time end) const {
     return;
   }
   const double rad = settings_.continuity_sigma_deg * kRadPerDeg;
-  sigma.head<6>() = both(settings_.continuity_sigma_m, rad);
+  const core::Vector6 drift = both(settings_.process_translation, settings_.process_rotation) * (gap * gap * gap / 3);
+  sigma.head<6>() = (both(settings_.continuity_sigma_m, rad).cwiseAbs2() + drift).cwiseSqrt();
   sigma.segment<3>(core::state_row::velocity).setConstant(std::sqrt(settings_.process_translation * d));
   sigma.segment<3>(core::state_row::omega).setConstant(std::sqrt(settings_.process_rotation * d));
   window.add_anchor(begin, window.trajectory().at(begin), sigma);

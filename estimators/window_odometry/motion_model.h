@@ -26,7 +26,7 @@ class MotionModel {
   void set_prior(WindowModel& model) const;
   /// What ties a new sweep of a sweepwise model to the motion before it, what extend() made of it being the mean.
   /// Nothing for the others.
-  void add_ties(Window& window, core::Time begin, core::Time end) const;
+  void add_ties(Window& window, core::Time last_end, core::Time begin, core::Time end) const;
 
  private:
   std::vector<core::Time> knots_over(const core::ParametricTrajectory& trajectory, core::Time end,

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "core/gp_trajectory.h"
 #include "estimators/blocks/stopwatch.h"
 
 namespace tarmac::estimators {
@@ -49,12 +50,6 @@ void WindowOdometry::add(const core::ImuSample& sample) {
 
 WindowOdometry::Step WindowOdometry::add(const core::LidarSweep& sweep) {
   Step step;
-  if (!window_ && (!inertial_.ready(sweep.begin) || sweep.empty())) {
-    since_last_.clear();
-    return step;
-  }
-  step.started = true;
-  step.first = !window_;
   Stopwatch stopwatch(step.stages_ms);
   sampler_.thin_out(sweep, {settings_.sampling.min_range_m, settings_.sampling.max_range_m,
                             startup() ? settings_.sampling.startup_sample_cell_m : settings_.sampling.sample_cell_m});
@@ -63,6 +58,12 @@ WindowOdometry::Step WindowOdometry::add(const core::LidarSweep& sweep) {
   keypoints_ = timed_points(sweep, sampler_.keypoints(), T_body_lidar_);
   matches_.clear();
   stopwatch.lap("sampling");
+  if (!window_ && !can_start(sweep)) {
+    since_last_.clear();
+    return step;
+  }
+  step.started = true;
+  step.first = !window_;
   if (step.first) start(sweep);
   grow(sweep);
   predict();
@@ -73,10 +74,18 @@ WindowOdometry::Step WindowOdometry::add(const core::LidarSweep& sweep) {
   step.T_map_body_end = window_->trajectory().pose(sweep.end);
   step.clipped_stamps = keypoints_.clipped;
   if (!step.lost) past_.back().sample = timed_points(sweep, sampler_.sample(), T_body_lidar_);
-  update_map();
+  // A lost sweep's place is a guess: nothing is dropped from the map about it, nothing enters.
+  if (!step.lost) update_map();
   stopwatch.lap("map");
   ++sweeps_;
   return step;
+}
+
+/// The first sweep starts the map: with fewer points than a registration asks for, or over before a process could have
+/// two knots, it is left to the next.
+bool WindowOdometry::can_start(const core::LidarSweep& sweep) const {
+  return inertial_.ready(sweep.begin) && sweep.end - sweep.begin >= core::kGpMinimumSpacing &&
+         keypoints_.size() >= static_cast<std::size_t>(settings_.solver.min_residuals);
 }
 
 void WindowOdometry::start(const core::LidarSweep& sweep) {
@@ -94,8 +103,7 @@ void WindowOdometry::grow(const core::LidarSweep& sweep) {
   past_.push_back({sweep.index, sweep.begin, sweep.end, {}});
   if (past_.size() > static_cast<std::size_t>(settings_.window.sweeps)) {
     past_.pop_front();
-    window_->marginalise_before(past_.front().begin, rule_named(settings_.window.marginalisation),
-                                settings_.window.eigenvalue_threshold);
+    forget_before(past_.front().begin);
   }
   if (past_.size() == 1 && sweeps_ == 0) {
     // The start defines the map: its pose is known, its motion nearly so.
@@ -115,11 +123,23 @@ void WindowOdometry::grow(const core::LidarSweep& sweep) {
       window_->add_bias_anchor(0, inertial_.biases(), bias_sigma);
     }
   } else {
-    model_.add_ties(*window_, sweep.begin, sweep.end);
+    model_.add_ties(*window_, last_end_, sweep.begin, sweep.end);
   }
+  last_end_ = sweep.end;
   if (!settings_.imu.gyro()) return;
   window_->add_bias_knot(sweep.end);
   for (const ImuReading& reading : inertial_.take_readings(past_.front().begin)) window_->add(reading);
+}
+
+void WindowOdometry::forget_before(Time t) {
+  const Marginalisation rule = rule_named(settings_.window.marginalisation);
+  // In steps: after a hole in the data there may be a thousand knots to eliminate, and what goes at once is dense.
+  constexpr core::Duration kStep(500'000'000);
+  if (!settings_.motion.is_sweepwise()) {
+    for (Time step = window_->trajectory().begin() + kStep; step < t; step += kStep)
+      window_->marginalise_before(step, rule, settings_.window.eigenvalue_threshold);
+  }
+  window_->marginalise_before(t, rule, settings_.window.eigenvalue_threshold);
 }
 
 void WindowOdometry::predict() {

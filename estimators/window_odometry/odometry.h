@@ -59,8 +59,10 @@ class WindowOdometry {
     TimedPoints sample;  ///< emptied once in the map
   };
   bool startup() const { return sweeps_ < settings_.sampling.startup_sweeps; }
+  bool can_start(const core::LidarSweep& sweep) const;
   void start(const core::LidarSweep& sweep);
   void grow(const core::LidarSweep& sweep);
+  void forget_before(core::Time t);
   void predict();
   void register_sweep(const core::LidarSweep& sweep, Step& step);
   void update_map();
@@ -74,6 +76,7 @@ class WindowOdometry {
   SurfaceMap map_;
   std::optional<Window> window_;
   int sweeps_ = 0;
+  core::Time last_end_;         ///< of the sweep before
   std::deque<PastSweep> past_;  ///< of the window, the last one being the present
   std::vector<core::ImuSample> since_last_;
   TimedPoints keypoints_;

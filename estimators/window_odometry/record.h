@@ -8,13 +8,11 @@
 namespace tarmac::estimators {
 
 /// The matches of the last association, with residuals, robust weights and Jacobians at the motion that came out.
-///   rows: r = n^T (p_map - q) [m], weight in 1 (planarity^2 x robust loss, over no sigma), J by the pose at the
-///   point's time.
-///         Of distributions: along their direction of least spread; they are no part of H_data then.
+///   rows: r = n^T (p_map - q) [m]; the match's weight squared x robust loss; J by the pose at the point's time. Of
+///         distributions: along their direction of least spread, as `surface`, no part of H_data
 ///   H_data: all matches' information by the pose at the sweep's end, the motion moving as a rigid whole, x sigma_m^2
 ///   H_prior: what the window says of the pose at the sweep's end without this sweep's points, x sigma_m^2; zero where
-///   it
-///            says nothing of some direction
+///            it leaves a direction free
 core::SweepDiagnostics record_of(const core::LidarSweep& sweep, const WindowOdometry& odometry,
                                  const WindowOdometry::Step& step, core::DiagnosticsLevel level);
 

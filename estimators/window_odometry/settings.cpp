@@ -30,6 +30,8 @@ void check_motion(const WindowOdometrySettings& s) {
 void check_imu(const WindowOdometrySettings& s) {
   const MotionSettings& m = s.motion;
   if (s.imu.use == "auto") refuse("imu.use: auto is batch-spline's; say none, gyro or gyro-accel");
+  if (!s.imu.gyro() && (s.imu.free_gravity || s.imu.free_time_offset))
+    refuse("imu.free_gravity and imu.free_time_offset are about an IMU, but imu.use is none");
   if (!s.imu.gyro()) return;
   if (!m.has_velocity())
     refuse(fmt::format("imu.use: {} has no velocity inside a sweep that an IMU could tell of; use none", m.model));

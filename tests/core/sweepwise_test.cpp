@@ -74,6 +74,18 @@ TEST_P(Sweepwise, WhatIsDroppedIsStillThePredictionsPast) {
   }
 }
 
+TEST(SweepwiseSpan, ASharedInstantBelongsToTheLaterSweep) {
+  SweepwiseTrajectory trajectory(SweepwiseModel::rigid, SE3::Identity());
+  trajectory.extend(time_from_ns(0), time_from_ns(100), {});
+  EXPECT_EQ(trajectory.first_block_at(time_from_ns(100)), 0);
+  trajectory.extend(time_from_ns(100), time_from_ns(200), {});
+  EXPECT_EQ(trajectory.first_block_at(time_from_ns(100)), 1);
+  EXPECT_EQ(trajectory.first_block_at(time_from_ns(99)), 0);
+  StateJet jet;
+  trajectory.jet(time_from_ns(100), Derivative::pose, jet);
+  EXPECT_EQ(jet.first, 6);
+}
+
 TEST(SweepwisePrediction, RepeatsTheLastMotion) {
   Vector6 twist;
   twist << 3, 0.2, 0, 0, 0.1, 0.7;

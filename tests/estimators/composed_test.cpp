@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <cstdio>
 #include <functional>
+#include <set>
 
 #include "core/config.h"
 #include "core/error.h"
@@ -45,7 +46,7 @@ class Drive {
         imu_(tests::room_imu(rig_, motion_, 0.1 * kSweeps + 0.05, imu_offset_s)) {}
 
   using EachSweep = std::function<void(const WindowOdometry::Step&, const SE3& T_map_body_true, core::Time end)>;
-  Outcome run(WindowOdometry& odometry, const EachSweep& each = {}) const {
+  Outcome run(WindowOdometry& odometry, const EachSweep& each = {}, const std::set<int>& missing = {}) const {
     Outcome outcome;
     std::size_t next = 0;
     double sum = 0;
@@ -53,6 +54,7 @@ class Drive {
     SE3 T_map_world = SE3::Identity();
     bool first = true;
     for (int k = 0; k < kSweeps; ++k) {
+      if (missing.contains(k)) continue;
       const core::LidarSweep sweep = sweep_of(k);
       while (next < imu_.size() && imu_[next].t <= sweep.end) odometry.add(imu_[next++]);
       const WindowOdometry::Step step = odometry.add(sweep);
@@ -232,6 +234,30 @@ TEST(Composed, ReportsHowConsistentItIsWithAMapOfItsOwn) {
   }
 }
 
+TEST(Composed, AHoleOfThreeSweepsEndsWithAWayBack) {
+  for (const char* name : {"rigid", "two-pose-slerp", "spline-50ms", "spline-50ms-imu", "wnoa", "singer-imu"}) {
+    const Drive drive(0.3);
+    WindowOdometry odometry(composed_profile(name), drive.rig());
+    const Outcome outcome = drive.run(odometry, {}, {20, 21, 22});
+    EXPECT_LT(outcome.end_error_m, 0.15) << name;
+  }
+}
+
+TEST(Composed, WaitsForASweepThatCanStartAMap) {
+  const Drive drive;
+  WindowOdometry odometry(composed_profile("wnoa"), drive.rig());
+  core::LidarSweep thin = drive.sweep_of(0);
+  for (auto* column : {&thin.x_m, &thin.y_m, &thin.z_m, &thin.intensity}) column->resize(20);
+  thin.t_ns.resize(20);
+  thin.ring.resize(20);
+  EXPECT_FALSE(odometry.add(thin).started);
+  core::LidarSweep instant = drive.sweep_of(1);
+  instant.end = instant.begin;
+  EXPECT_FALSE(odometry.add(instant).started);
+  EXPECT_TRUE(odometry.add(drive.sweep_of(2)).started);
+  EXPECT_FALSE(odometry.add(drive.sweep_of(3)).lost);
+}
+
 struct Contradiction {
   const char* yaml;
   const char* names;
@@ -249,7 +275,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Contradiction{"{map: {delay_sweeps: 2}, window: {sweeps: 2}}", "map.delay_sweeps"},
                     Contradiction{"{lidar: {min_neighbours: 30}}", "lidar.min_neighbours"},
                     Contradiction{"{sampling: {min_range_m: 200}}", "sampling.min_range_m"},
-                    Contradiction{"{imu: {use: auto}}", "imu.use"}));
+                    Contradiction{"{imu: {use: auto}}", "imu.use"},
+                    Contradiction{"{imu: {free_time_offset: true}}", "imu.free_time_offset"}));
 
 TEST_P(ComposedRefuses, SettingsThatContradictEachOther) {
   ComposedOptions options;
@@ -262,7 +289,7 @@ TEST_P(ComposedRefuses, SettingsThatContradictEachOther) {
   }
 }
 
-TEST(SteamLo, ASweepEntersTheMapOneSweepLater) {
+TEST(SteamLo, FollowsADriveWithAMapThatIsOneSweepBehind) {
   const Drive drive;
   SteamLoOptions options;
   options.set_profile("newer-college");
