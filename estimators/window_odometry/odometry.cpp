@@ -97,6 +97,24 @@ void WindowOdometry::start(const core::LidarSweep& sweep) {
   window_.emplace(std::move(model), std::move(state));
 }
 
+/// The start defines the map: its pose is known, its motion nearly so.
+void WindowOdometry::anchor_start(Time begin) {
+  core::Kinematics mean;
+  mean.T_world_body = inertial_.T_map_body();
+  core::StateVector sigma = core::StateVector::Zero();
+  sigma.head<6>().setConstant(settings_.start_sigma_m);
+  if (settings_.motion.has_velocity()) {
+    sigma.segment<3>(core::state_row::velocity).setConstant(settings_.start_velocity_sigma_m_s);
+    sigma.segment<3>(core::state_row::omega).setConstant(0.2 * settings_.start_velocity_sigma_m_s);
+  }
+  window_->add_anchor(begin, mean, sigma);
+  if (!settings_.imu.gyro()) return;
+  core::Vector6 bias_sigma;
+  bias_sigma << Vector3d::Constant(settings_.imu.gyro_bias_sigma_rad_s),
+      Vector3d::Constant(settings_.imu.accel_bias_sigma_m_s2);
+  window_->add_bias_anchor(0, inertial_.biases(), bias_sigma);
+}
+
 void WindowOdometry::grow(const core::LidarSweep& sweep) {
   model_.extend_over(*window_, sweep.begin, sweep.end, since_last_);
   since_last_.clear();
@@ -105,23 +123,8 @@ void WindowOdometry::grow(const core::LidarSweep& sweep) {
     past_.pop_front();
     forget_before(past_.front().begin);
   }
-  if (past_.size() == 1 && sweeps_ == 0) {
-    // The start defines the map: its pose is known, its motion nearly so.
-    core::Kinematics mean;
-    mean.T_world_body = inertial_.T_map_body();
-    core::StateVector sigma = core::StateVector::Zero();
-    sigma.head<6>().setConstant(settings_.start_sigma_m);
-    if (settings_.motion.has_velocity()) {
-      sigma.segment<3>(core::state_row::velocity).setConstant(settings_.start_velocity_sigma_m_s);
-      sigma.segment<3>(core::state_row::omega).setConstant(0.2 * settings_.start_velocity_sigma_m_s);
-    }
-    window_->add_anchor(sweep.begin, mean, sigma);
-    if (settings_.imu.gyro()) {
-      core::Vector6 bias_sigma;
-      bias_sigma << Vector3d::Constant(settings_.imu.gyro_bias_sigma_rad_s),
-          Vector3d::Constant(settings_.imu.accel_bias_sigma_m_s2);
-      window_->add_bias_anchor(0, inertial_.biases(), bias_sigma);
-    }
+  if (sweeps_ == 0) {
+    anchor_start(sweep.begin);
   } else {
     model_.add_ties(*window_, last_end_, sweep.begin, sweep.end);
   }
@@ -150,23 +153,37 @@ void WindowOdometry::predict() {
   window_->solve(solve);
 }
 
+int WindowOdometry::match_keypoints() {
+  place(keypoints_, window_->trajectory(), T_map_body_, p_map_);
+  sensor_map_.resize(keypoints_.size());
+  for (std::size_t k = 0; k < keypoints_.size(); ++k)
+    sensor_map_[k] = T_map_body_[keypoints_.stamp[k]] * T_body_lidar_.translation();
+  return map_.match(keypoints_.p_body, p_map_, sensor_map_, startup(), matches_);
+}
+
+bool WindowOdometry::has_settled(const SweepEnds& before, const SweepEnds& now) const {
+  const auto moved_m = [](const SE3& a, const SE3& b) { return (a.translation() - b.translation()).norm(); };
+  const auto turned_rad = [](const SE3& a, const SE3& b) {
+    return core::so3::angle_rad(a.linear().transpose() * b.linear());
+  };
+  const SolverSettings& s = settings_.solver;
+  return s.stop_early && moved_m(before.begin, now.begin) + moved_m(before.end, now.end) < s.convergence_m &&
+         turned_rad(before.begin, now.begin) + turned_rad(before.end, now.end) < s.convergence_deg * kRadPerDeg;
+}
+
 void WindowOdometry::register_sweep(const core::LidarSweep& sweep, Step& step) {
   const SolverSettings& settings = settings_.solver;
   const int allowed = startup() ? settings.startup_associations : settings.associations;
   const bool distributions = settings_.lidar.residual == "point-to-distribution";
   const WindowState predicted = window_->state();
-  std::vector<Vector3d> sensor_map;
-  SE3 begin = window_->trajectory().pose(sweep.begin), end = window_->trajectory().pose(sweep.end);
-  for (step.associations = 0; step.associations < allowed && !step.converged;) {
-    place(keypoints_, window_->trajectory(), T_map_body_, p_map_);
-    sensor_map.resize(keypoints_.size());
-    for (std::size_t k = 0; k < keypoints_.size(); ++k)
-      sensor_map[k] = T_map_body_[keypoints_.stamp[k]] * T_body_lidar_.translation();
-    step.residuals = map_.match(keypoints_.p_body, p_map_, sensor_map, startup(), matches_);
-    if (step.residuals < settings.min_residuals) {
-      step.lost = true;
-      break;
-    }
+  const auto ends = [&] {
+    return SweepEnds{window_->trajectory().pose(sweep.begin), window_->trajectory().pose(sweep.end)};
+  };
+  SweepEnds before = ends();
+  while (step.associations < allowed && !step.converged && !step.lost) {
+    step.residuals = match_keypoints();
+    step.lost = step.residuals < settings.min_residuals;
+    if (step.lost) break;
     window_->set_lidar(sweep.index, lidar_factors(keypoints_, matches_, distributions));
     SolveSettings solve;
     solve.levenberg_marquardt = settings.levenberg_marquardt;
@@ -175,19 +192,10 @@ void WindowOdometry::register_sweep(const core::LidarSweep& sweep, Step& step) {
     const SolveReport report = window_->solve(solve);
     ++step.associations;
     step.solver_steps += report.iterations;
-    if (!report.ok) {
-      step.lost = true;
-      break;
-    }
-    const SE3 new_begin = window_->trajectory().pose(sweep.begin), new_end = window_->trajectory().pose(sweep.end);
-    const double moved_m =
-        (new_begin.translation() - begin.translation()).norm() + (new_end.translation() - end.translation()).norm();
-    const double turned_rad = core::so3::angle_rad(begin.linear().transpose() * new_begin.linear()) +
-                              core::so3::angle_rad(end.linear().transpose() * new_end.linear());
-    begin = new_begin;
-    end = new_end;
-    step.converged =
-        settings.stop_early && moved_m < settings.convergence_m && turned_rad < settings.convergence_deg * kRadPerDeg;
+    step.lost = !report.ok;
+    const SweepEnds now = ends();
+    step.converged = has_settled(before, now);
+    before = now;
   }
   if (!step.lost) return;
   window_->set_lidar(sweep.index, {});

@@ -61,9 +61,16 @@ class WindowOdometry {
   bool startup() const { return sweeps_ < settings_.sampling.startup_sweeps; }
   bool can_start(const core::LidarSweep& sweep) const;
   void start(const core::LidarSweep& sweep);
+  void anchor_start(core::Time begin);
   void grow(const core::LidarSweep& sweep);
   void forget_before(core::Time t);
   void predict();
+  struct SweepEnds {
+    core::SE3 begin, end;
+  };
+  /// @returns how many keypoints found a surface
+  int match_keypoints();
+  bool has_settled(const SweepEnds& before, const SweepEnds& now) const;
   void register_sweep(const core::LidarSweep& sweep, Step& step);
   void update_map();
 
@@ -82,7 +89,7 @@ class WindowOdometry {
   TimedPoints keypoints_;
   std::vector<SurfaceMatch> matches_;
   std::vector<core::SE3> T_map_body_;
-  std::vector<Eigen::Vector3d> p_map_;
+  std::vector<Eigen::Vector3d> p_map_, sensor_map_;
 };
 
 }  // namespace tarmac::estimators
