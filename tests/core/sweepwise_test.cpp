@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "core/sweepwise_trajectory.h"
-#include "parametric_laws.h"
+#include "tests/core/parametric_laws.h"
 
 namespace tarmac::core {
 namespace {
