@@ -35,6 +35,8 @@ void add_rows(const std::vector<ResidualRow>& rows, ChunkData& data) {
   data.add<float>(values);
 }
 
+constexpr std::size_t kCovarianceColumn = 12;
+
 [[noreturn]] void wrong_shape(const std::string& where) {
   throw DamagedFile(fmt::format("{}: a sweep's diagnostics have a wrong shape", where));
 }
@@ -44,7 +46,8 @@ std::vector<ResidualRow> rows_of(const ChunkData& data, std::size_t column, cons
   const auto sensor = data.column<std::uint16_t>(column + 1);
   const auto point = data.column<std::uint32_t>(column + 2);
   const auto values = data.column<float>(column + 3);
-  if (sensor.size() != t_ns.size() || point.size() != t_ns.size() || values.size() != 8 * t_ns.size()) wrong_shape(where);
+  if (sensor.size() != t_ns.size() || point.size() != t_ns.size() || values.size() != 8 * t_ns.size())
+    wrong_shape(where);
   std::vector<ResidualRow> rows(t_ns.size());
   for (std::size_t i = 0; i < t_ns.size(); ++i) {
     const float* v = values.data() + 8 * i;
@@ -63,6 +66,7 @@ ChunkData chunk_of(const SweepDiagnostics& s) {
   data.add<double>({s.H_prior.data(), 36});
   add_rows(s.rows, data);
   add_rows(s.surface, data);
+  data.add<double>({s.covariance.data(), 36});
   return data;
 }
 
@@ -83,6 +87,10 @@ SweepDiagnostics from_chunk(const ChunkData& data, const std::string& where) {
   s.H_prior = Eigen::Map<const Matrix6>(H_prior.data());
   s.rows = rows_of(data, 4, where);
   s.surface = rows_of(data, 8, where);
+  if (data.column_count() <= kCovarianceColumn) return s;  // a run of an earlier version states none
+  const auto covariance = data.column<double>(kCovarianceColumn);
+  if (covariance.size() != 36) wrong_shape(where);
+  s.covariance = Eigen::Map<const Matrix6>(covariance.data());
   return s;
 }
 

@@ -47,8 +47,11 @@ struct SweepDiagnostics {
   double scale_m = 0;                 ///< the loss's scale (KISS-ICP: sigma)
   Matrix6 H_data = Matrix6::Zero();   ///< sum of w J^T J over data residuals, at the sweep's reference instant
   Matrix6 H_prior = Matrix6::Zero();  ///< the same of priors and regularisers
-  std::vector<ResidualRow> rows;      ///< level full
-  bool rows_are_surface = false;      ///< `rows` are point-to-surface rows; `surface` stays empty then
+  /// Covariance that the method states of T_map_body at the reference instant (xi of T Exp(xi), translation first; m^2,
+  /// m rad, rad^2). Zero: it states none.
+  Matrix6 covariance = Matrix6::Zero();
+  std::vector<ResidualRow> rows;  ///< level full
+  bool rows_are_surface = false;  ///< `rows` are point-to-surface rows; `surface` stays empty then
   /// Level full: point-to-surface residuals of a method that solves with others, seen against its own map at the end
   /// of its iterations. No part of H_data: they are there for the residual-over-time instrument.
   std::vector<ResidualRow> surface;

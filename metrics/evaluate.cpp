@@ -13,6 +13,7 @@
 #include <unordered_map>
 
 #include "core/error.h"
+#include "metrics/consistency.h"
 #include "metrics/cost.h"
 #include "metrics/degeneracy/degeneracy.h"
 #include "metrics/drift.h"
@@ -242,6 +243,7 @@ void evaluate_subject(const EvaluationInput& input, const EvaluateSettings& sett
       add_paths(input, subject.pairs, evaluation.series);
       add_trajectory_series(subject.pairs, t_zero, evaluation.series);
       add_drift_series(subject.pairs, t_zero, evaluation.series);
+      add_consistency(subject.pairs, input.diagnostics, t_zero, rows, evaluation.series);
       add_point_series(points.sweeps, points.histograms, t_zero, evaluation.series);
       gather_map(points.sweeps, evaluation.map);
       add_timing(input, settings, &subject.pairs, rows, evaluation);

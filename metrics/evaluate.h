@@ -30,6 +30,8 @@
 ///   residual_slope_vs_domega, residual_slope_vs_dv and ..._fit: each sweep's slope over the change of motion in it
 ///     (residual_slope.h), and the fitted line with +- 1 sigma
 ///
+///   nees_vs_time: squared pose error in terms of the stated covariance, per degree of freedom (consistency.h)
+///
 ///   error_vs_lag: ATE with the truth taken earlier by a lag
 ///
 ///   and those of degeneracy/degeneracy.h

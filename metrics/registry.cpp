@@ -12,6 +12,8 @@ constexpr const char* kUmeyama = "Umeyama 1991, Least-Squares Estimation of Tran
 constexpr const char* kKitti =
     "Geiger et al. 2012, Are we ready for Autonomous Driving? The KITTI Vision Benchmark Suite";
 constexpr const char* kOwn = "metrics/README.md";
+constexpr const char* kBarShalom =
+    "Bar-Shalom, Li and Kirubarajan 2001, Estimation with Applications to Tracking and Navigation, 5.4";
 constexpr const char* kDegeneracy = "metrics/README.md; Zhang, Kaess and Singh 2016; Wilson 1927";
 
 constexpr MetricEntry kMetrics[] = {
@@ -195,6 +197,16 @@ constexpr MetricEntry kMetrics[] = {
      "Probability that the same eigenvalue is smaller on a degenerate sweep than on another: what any threshold could "
      "reach; 0.5 knows nothing.",
      kDegeneracy, "degeneracy"},
+    {"anees_per_dof", "1", true, kFirst,
+     "Squared pose error in terms of the covariance that the method states, per degree of freedom; mean over sweeps. "
+     "1: "
+     "the covariance tells the truth; above: over-confident, as every method with a map of its own is. No bound is "
+     "set.",
+     kBarShalom, "consistency"},
+    {"anees_root_per_dof", "1", true, kFirst,
+     "Root of the same: by what factor the stated standard deviations are too small.", kBarShalom, "consistency"},
+    {"nees_covered_percent", "%", false, kFirst,
+     "Share of sweeps whose true pose lies in the 95 % ellipsoid of the stated covariance.", kBarShalom, "consistency"},
     {"time_lag_ms", "ms", true, kNone,
      "Lag in time at which the motions from sweep to sweep fit the truth best; positive: the estimate is late. 95 % "
      "bootstrap interval.",

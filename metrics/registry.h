@@ -13,8 +13,8 @@ struct MetricEntry {
   const char* alignment;  ///< "first valid reference pose", "SE(3)", "none needed", ...
   const char* meaning;    ///< one sentence
   const char* source;     ///< definition or paper
-  /// coverage | trajectory | drift | points | timing | residuals | degeneracy | effort | cost; cost = no two runs have
-  /// the same
+  /// coverage | trajectory | drift | points | timing | residuals | degeneracy | consistency | effort | cost; cost = no
+  /// two runs have the same
   const char* family;
 };
 

@@ -1,6 +1,7 @@
 #include "estimators/window_odometry/record.h"
 
 #include "estimators/blocks/point_to_plane.h"
+#include "estimators/blocks/residual_row.h"
 
 namespace tarmac::estimators {
 namespace {
@@ -9,18 +10,6 @@ using core::Matrix6;
 using core::Row6;
 using core::SE3;
 using Eigen::Vector3d;
-
-core::ResidualRow row_of(const core::LidarSweep& sweep, std::uint32_t point, double value, double weight,
-                         const Row6& J) {
-  core::ResidualRow row;
-  row.t_ns = sweep.t_ns[point];
-  row.value = static_cast<float>(value);
-  row.weight = static_cast<float>(weight);
-  for (int k = 0; k < 6; ++k) row.jacobian[k] = static_cast<float>(J[k]);
-  row.sensor = sweep.sensor_of(point);
-  row.point = point;
-  return row;
-}
 
 /// Information of one match, in units of 1/sigma_m^2, by the pose at the end, and the robust weight with it.
 double add_information(const LidarFactor& factor, bool distribution, const SE3& T, const SE3& T_end_map,
@@ -77,9 +66,11 @@ core::SweepDiagnostics record_of(const core::LidarSweep& sweep, const WindowOdom
     if (!full) continue;
     Row6 J;
     const double r = PointToPlane{match.factor.p_body, match.factor.q_map, match.factor.n_map}(T, J);
-    (distribution ? record.surface : record.rows).push_back(row_of(sweep, keypoints.point[k], r, weight, J));
+    (distribution ? record.surface : record.rows).push_back(residual_row(sweep, keypoints.point[k], r, weight, J));
   }
   record.H_prior = odometry.prior_information(sweep) * settings.lidar.sigma_m * settings.lidar.sigma_m;
+  const Eigen::MatrixXd covariance = odometry.window().covariance(sweep.end, core::Derivative::pose);
+  if (covariance.rows() == 6) record.covariance = covariance;
   return record;
 }
 

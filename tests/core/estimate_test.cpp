@@ -153,6 +153,7 @@ SweepDiagnostics example_diagnostics(std::uint64_t number) {
   for (std::uint32_t k = 0; k < 36; ++k) {
     d.H_data(k / 6, k % 6) = stream.normal(0, k);
     d.H_prior(k / 6, k % 6) = stream.normal(1, k);
+    d.covariance(k / 6, k % 6) = stream.normal(100, k);
   }
   d.rows_are_surface = number == 1;
   for (std::uint64_t i = 0; i < 20 * number; ++i) {
@@ -194,6 +195,7 @@ TEST(Diagnostics, RoundTripBitExactly) {
     EXPECT_EQ(back[k].scale_m, sweeps[k].scale_m);
     EXPECT_EQ(back[k].H_data, sweeps[k].H_data);
     EXPECT_EQ(back[k].H_prior, sweeps[k].H_prior);
+    EXPECT_EQ(back[k].covariance, sweeps[k].covariance);
     EXPECT_EQ(back[k].rows_are_surface, sweeps[k].rows_are_surface);
     expect_same_rows(back[k].rows, sweeps[k].rows);
     expect_same_rows(back[k].surface, sweeps[k].surface);
