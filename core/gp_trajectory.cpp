@@ -6,11 +6,12 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/pose_numbers.h"
 
 namespace tarmac::core {
 namespace {
 
-constexpr int kPoseNumbers = 12;
+constexpr int kPoseNumbers = PoseNumbers::RowsAtCompileTime;
 
 void check_knot(const GpKnot& knot, std::size_t i) {
   if (!se3::all_finite(knot.T_world_body) || !knot.varpi.allFinite() || !knot.dvarpi.allFinite()) {
@@ -185,7 +186,7 @@ void GpTrajectory::retract(const Eigen::Ref<const Eigen::VectorXd>& step) {
 Eigen::VectorXd GpTrajectory::value(int block) const {
   const GpKnot& knot = knots_[static_cast<std::size_t>(block)];
   Eigen::VectorXd out(kPoseNumbers + block_size() - 6);
-  Eigen::Map<Eigen::Matrix<double, 3, 4>>(out.data()) = knot.T_world_body.matrix().topRows<3>();
+  out.head<kPoseNumbers>() = numbers_of(knot.T_world_body);
   out.segment<6>(kPoseNumbers) = knot.varpi;
   if (block_size() > 12) out.tail<6>() = knot.dvarpi;
   return out;
@@ -195,8 +196,7 @@ Eigen::VectorXd GpTrajectory::value(int block) const {
 void GpTrajectory::difference(int block, const Eigen::VectorXd& base, Eigen::VectorXd& d, Eigen::MatrixXd& J) const {
   const int size = block_size();
   if (base.size() != kPoseNumbers + size - 6) throw std::invalid_argument("base is no value of such a block");
-  SE3 T_base = SE3::Identity();
-  T_base.matrix().topRows<3>() = Eigen::Map<const Eigen::Matrix<double, 3, 4>>(base.data());
+  const SE3 T_base = pose_of(base.head<kPoseNumbers>());
   const GpKnot& knot = knots_[static_cast<std::size_t>(block)];
   d.resize(size);
   d.head<6>() = se3::log(T_base.inverse() * knot.T_world_body);

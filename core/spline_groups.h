@@ -67,35 +67,18 @@ inline Eigen::Quaterniond quaternion_of(const SplineFactor& f) {
   return {f.w, f.xyz.x(), f.xyz.y(), f.xyz.z()};
 }
 
-/// phi + eps rho.
-struct DualVector {
-  Eigen::Vector3d real, dual;
+/// real + eps dual: a tangent (phi + eps rho) or a matrix.
+template <class Part>
+struct Dual {
+  Part real, dual;
+  friend Dual operator+(const Dual& a, const Dual& b) { return {a.real + b.real, a.dual + b.dual}; }
+  friend Dual operator-(const Dual& a, const Dual& b) { return {a.real - b.real, a.dual - b.dual}; }
+  friend Dual operator*(double s, const Dual& a) { return {s * a.real, s * a.dual}; }
 };
-struct DualMatrix {
-  Eigen::Matrix3d real, dual;
-};
-inline DualVector operator+(const DualVector& a, const DualVector& b) {
-  return {a.real + b.real, a.dual + b.dual};
-}
-inline DualVector operator-(const DualVector& a, const DualVector& b) {
-  return {a.real - b.real, a.dual - b.dual};
-}
-inline DualVector operator*(double s, const DualVector& a) {
-  return {s * a.real, s * a.dual};
-}
-inline DualVector operator*(const DualMatrix& a, const DualVector& b) {
-  return {a.real * b.real, a.real * b.dual + a.dual * b.real};
-}
-inline DualMatrix operator+(const DualMatrix& a, const DualMatrix& b) {
-  return {a.real + b.real, a.dual + b.dual};
-}
-inline DualMatrix operator-(const DualMatrix& a, const DualMatrix& b) {
-  return {a.real - b.real, a.dual - b.dual};
-}
-inline DualMatrix operator*(double s, const DualMatrix& a) {
-  return {s * a.real, s * a.dual};
-}
-inline DualMatrix operator*(const DualMatrix& a, const DualMatrix& b) {
+using DualVector = Dual<Eigen::Vector3d>;
+using DualMatrix = Dual<Eigen::Matrix3d>;
+template <class Part>
+inline Dual<Part> operator*(const DualMatrix& a, const Dual<Part>& b) {
   return {a.real * b.real, a.real * b.dual + a.dual * b.real};
 }
 

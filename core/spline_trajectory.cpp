@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/pose_numbers.h"
 
 namespace tarmac::core {
 namespace {
@@ -151,19 +152,13 @@ void SplineTrajectory::retract(const Eigen::Ref<const Eigen::VectorXd>& step) {
 }
 
 Eigen::VectorXd SplineTrajectory::value(int block) const {
-  const SE3& T = control_.at(static_cast<std::size_t>(block));
-  Eigen::VectorXd value(12);
-  value.head<9>() = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(Eigen::Matrix3d(T.linear()).data());
-  value.tail<3>() = T.translation();
-  return value;
+  return numbers_of(control_.at(static_cast<std::size_t>(block)));
 }
 
 void SplineTrajectory::difference(int block, const Eigen::VectorXd& base, Eigen::VectorXd& d,
                                   Eigen::MatrixXd& J) const {
   const SE3& T = control_.at(static_cast<std::size_t>(block));
-  SE3 T_base = SE3::Identity();
-  T_base.linear() = Eigen::Map<const Eigen::Matrix3d>(base.data());
-  T_base.translation() = base.tail<3>();
+  const SE3 T_base = pose_of(base);
   d.resize(6);
   J.setZero(6, 6);
   if (kind_ == SplineKind::se3) {

@@ -6,26 +6,13 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/pose_numbers.h"
 
 namespace tarmac::core {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-Eigen::VectorXd numbers_of(const SE3& T) {
-  Eigen::VectorXd v(12);
-  const Matrix3d R = T.linear();
-  v << Eigen::Map<const Eigen::Matrix<double, 9, 1>>(R.data()), T.translation();
-  return v;
-}
-
-SE3 pose_of(const Eigen::VectorXd& v) {
-  SE3 T = SE3::Identity();
-  T.linear() = Eigen::Map<const Matrix3d>(v.data());
-  T.translation() = v.tail<3>();
-  return T;
-}
 
 void fill_twist_state(const Vector6& twist, Kinematics& state) {
   const Matrix3d R = state.T_world_body.linear();
