@@ -46,6 +46,18 @@ WindowModel model_of(const BatchSplineOptions& o, const core::Rig& rig, bool wit
   return model;
 }
 
+/// The groups are shared with odometries; what only these can use is not taken in silence.
+void check_effect(const BatchSplineOptions& options) {
+  const BatchSplineOptions defaults;
+  const auto refuse = [](const char* name) {
+    throw core::InputError(
+        fmt::format("{}: has no effect on the batch, whose map is made of all sweeps at once", name));
+  };
+  if (options.map.radius_m != defaults.map.radius_m) refuse("map.radius_m");
+  if (options.map.delay_sweeps != defaults.map.delay_sweeps) refuse("map.delay_sweeps");
+  if (options.lidar.startup_voxel_reach != defaults.lidar.startup_voxel_reach) refuse("lidar.startup_voxel_reach");
+}
+
 }  // namespace
 
 BatchSpline::BatchSpline(const BatchSplineOptions& options, const EstimatorContext& context)
@@ -60,6 +72,9 @@ BatchSpline::BatchSpline(const BatchSplineOptions& options, const EstimatorConte
         fmt::format("odometry: {} uses no IMU, so that the batch has no attitude to start from; take a profile with "
                     "-imu, or imu.use none",
                     options.odometry));
+  if (!with_imu_ && options.imu.free_time_offset)
+    throw core::InputError("imu.free_time_offset is about an IMU, but imu.use is none or the rig has no usable one");
+  check_effect(options);
   if (options.lidar.min_neighbours > options.lidar.max_neighbours)
     throw core::InputError(fmt::format("lidar.min_neighbours: {} must not be above lidar.max_neighbours ({})",
                                        options.lidar.min_neighbours, options.lidar.max_neighbours));

@@ -2,16 +2,6 @@
 #include "estimators/window_odometry/estimator.h"
 
 namespace tarmac::estimators {
-namespace {
-
-std::unique_ptr<Estimator> make(const core::ConfigNode& node, const EstimatorContext& context) {
-  ComposedOptions options;
-  node.read(options);
-  return std::make_unique<WindowOdometryEstimator>(options, context);
-}
-
-}  // namespace
-
 extern const EstimatorEntry composed;
 const EstimatorEntry composed{
     .name = "composed",
@@ -21,7 +11,7 @@ const EstimatorEntry composed{
         "the parts' own: Sommer et al. CVPR 2020 (splines), Barfoot et al. RSS 2014 (Gaussian processes), Dellenbach "
         "et al. ICRA 2022 (front end)",
     .needs = Needs::lidar,
-    .make = make,
+    .make = make_with<WindowOdometryEstimator, ComposedOptions>,
     .describe = describe_with<ComposedOptions>,
     .resolve = resolve_with<ComposedOptions>};
 

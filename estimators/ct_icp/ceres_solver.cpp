@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "estimators/blocks/ceres_loss.h"
 #include "estimators/blocks/point_to_plane.h"
 #include "estimators/ct_icp/elastic_problem.h"
 
@@ -140,20 +141,6 @@ class PriorCost final : public ceres::CostFunction {
   int residuals_;
 };
 
-class LossAdaptor final : public ceres::LossFunction {
- public:
-  explicit LossAdaptor(const RobustLoss& loss) : loss_(loss) {}
-  void Evaluate(double s, double out[3]) const override {
-    const RobustLoss::Value value = loss_(s);
-    out[0] = value.rho;
-    out[1] = value.first;
-    out[2] = value.second;
-  }
-
- private:
-  RobustLoss loss_;
-};
-
 ceres::Problem::Options problem_options(MotionState& state) {
   ceres::Problem::Options options;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -192,12 +179,12 @@ bool solve_with_ceres(const ElasticProblem& problem, int max_iterations, core::S
     throw std::invalid_argument("the quirk's regularisers have no cost that Ceres could lower");
   }
   MotionState state(motion);
-  LossAdaptor loss(problem.loss);
+  const auto loss = ceres_loss(problem.loss);
   ceres::Problem ceres_problem(problem_options(state));
   for (std::size_t b = 0; b < state.blocks(); ++b) {
     ceres_problem.AddParameterBlock(state.parameters(b), kPoseSize, new PoseManifold);
   }
-  add_data(problem, state, problem.loss.kind == Loss::standard ? nullptr : &loss, ceres_problem);
+  add_data(problem, state, problem.loss.kind == Loss::standard ? nullptr : loss.get(), ceres_problem);
   const int residuals = ceres_problem.NumResiduals();
   if (problem.regularisers != nullptr && state.blocks() == 2) {
     const auto rows = static_cast<int>(prior_rows(*problem.regularisers, residuals, motion).size());

@@ -1,25 +1,17 @@
 /// What CT-ICP can be told. A profile sets all defaults; options given beside it override single ones.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
-#include "core/options.h"
+#include "estimators/blocks/elastic_options.h"
 
 namespace tarmac::estimators {
 
 /// Numbers whose source is a profile have no default of their own here: set_profile fills them.
-struct CtIcpOptions {
+struct CtIcpOptions : ElasticSamplingOptions, NeighbourOptions {
   std::string profile = "icra-2022";
 
   std::string trajectory = "slerp";
-  std::int64_t random_seed = 0;
-  double min_range_m = 0;
-  double max_range_m = 100;
-
-  int startup_sweeps = 20;
-  double sample_cell_m = 0.5, startup_sample_cell_m = 0.2;
-  double keypoint_cell_m = 1.5, startup_keypoint_cell_m = 1.0;
   int max_residuals = 0;
   int min_residuals = 100;
 
@@ -30,8 +22,6 @@ struct CtIcpOptions {
   double insertion_max_rotation_deg = 0;
   int insertion_max_skipped = 5;
 
-  int max_neighbours = 20, min_neighbours = 20;
-  int voxel_reach = 1, startup_voxel_reach = 2;
   double search_radius_m = 0;
   std::string plane_point = "nearest";
   double planarity_weight = 1, neighbourhood_weight = 0;
@@ -109,15 +99,7 @@ struct CtIcpOptions {
     v.choice("trajectory", trajectory, {"slerp", "screw"},
              "how the pose runs from a sweep's begin to its end: slerp of rotation and lerp of translation, or at a "
              "constant twist");
-    v("random_seed", random_seed, "of the choice of one point a cell");
-    v("min_range_m", min_range_m, "points at or below this range are left out", {.at_least = 0});
-    v("max_range_m", max_range_m, "points at or beyond this range are left out", {.above = 0});
-    v("startup_sweeps", startup_sweeps, "number of first sweeps under the start-up values", {.at_least = 0});
-    v("sample_cell_m", sample_cell_m, "one random point of each such cell goes on to keypoints and map",
-      {.at_least = 0.01});
-    v("startup_sample_cell_m", startup_sample_cell_m, "the same during start-up", {.at_least = 0.01});
-    v("keypoint_cell_m", keypoint_cell_m, "one of those of each such cell is a keypoint", {.at_least = 0.01});
-    v("startup_keypoint_cell_m", startup_keypoint_cell_m, "the same during start-up", {.at_least = 0.01});
+    ElasticSamplingOptions::visit(v);
     v("max_residuals", max_residuals, "residuals beyond this number are left out; 0: no limit", {.at_least = 0});
     v("min_residuals", min_residuals, "with fewer keypoints or residuals a sweep is lost", {.at_least = 12});
   }
@@ -136,11 +118,7 @@ struct CtIcpOptions {
   }
 
   void visit_association(core::OptionVisitor& v) {
-    v("max_neighbours", max_neighbours, "map points that a plane is fitted to, at most",
-      {.at_least = 3, .at_most = 64});
-    v("min_neighbours", min_neighbours, "keypoints with fewer are left out", {.at_least = 3, .at_most = 64});
-    v("voxel_reach", voxel_reach, "voxels searched each way", {.at_least = 1, .at_most = 8});
-    v("startup_voxel_reach", startup_voxel_reach, "the same during start-up", {.at_least = 1, .at_most = 8});
+    NeighbourOptions::visit(v);
     v("search_radius_m", search_radius_m, "neighbours farther than this are left out; 0: no limit", {.at_least = 0});
     v.choice("plane_point", plane_point, {"nearest", "farthest"},
              "which of the neighbours the plane goes through; farthest is what upstream's master does by accident");

@@ -1,6 +1,7 @@
 #include "estimators/ct_icp/record.h"
 
 #include "estimators/blocks/point_to_plane.h"
+#include "estimators/blocks/residual_row.h"
 
 namespace tarmac::estimators {
 namespace {
@@ -8,18 +9,6 @@ namespace {
 using core::Matrix6;
 using core::Row6;
 using core::SE3;
-
-core::ResidualRow row_of(const core::LidarSweep& sweep, const Keypoint& keypoint, double value, double weight,
-                         const Row6& J) {
-  core::ResidualRow row;
-  row.t_ns = sweep.t_ns[keypoint.point];
-  row.value = static_cast<float>(value);
-  row.weight = static_cast<float>(weight);
-  for (int k = 0; k < 6; ++k) row.jacobian[k] = static_cast<float>(J[k]);
-  row.sensor = sweep.sensor_of(keypoint.point);
-  row.point = keypoint.point;
-  return row;
-}
 
 void add_priors(const CtOdometry::Step& step, int residuals, core::SweepDiagnostics& record) {
   const SE3 &begin = step.motion.poses.front(), &end = step.motion.poses.back();
@@ -60,7 +49,7 @@ core::SweepDiagnostics record_of(const core::LidarSweep& sweep, const CtOdometry
     J_end << n_end.transpose(), p_end.cross(n_end).transpose();
     record.H_data += weight * (J_end.transpose() * J_end);
     ++record.residuals;
-    if (full) record.rows.push_back(row_of(sweep, keypoint, r, weight, J));
+    if (full) record.rows.push_back(residual_row(sweep, keypoint.point, r, weight, J));
   }
   if (step.regularised && record.residuals > 0) add_priors(step, record.residuals, record);
   return record;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "estimators/blocks/residual_row.h"
 #include "estimators/blocks/stopwatch.h"
 
 namespace tarmac::estimators {
@@ -26,7 +27,8 @@ class RowWriter {
 
   void write(std::size_t i, const Match& match, std::vector<core::ResidualRow>& rows) const {
     const Matrix36 J = jacobian(T_map_body(i).linear(), T_body_lidar_ * sweep_.point(i));
-    for (int axis = 0; axis < 3; ++axis) rows.push_back(row(i, match.residual_m[axis], match.weight, J.row(axis)));
+    for (int axis = 0; axis < 3; ++axis)
+      rows.push_back(residual_row(sweep_, i, match.residual_m[axis], match.weight, J.row(axis)));
   }
 
   void write(const KissOdometry::SurfacePoint& at, std::vector<core::ResidualRow>& rows) const {
@@ -37,22 +39,12 @@ class RowWriter {
     const Vector3d n_body = T.linear().transpose() * n_map;
     core::Row6 J;
     J << n_body.transpose(), p_body.cross(n_body).transpose();
-    rows.push_back(row(at.point, n_map.dot(p_map - at.plane.centre), 1, J));
+    rows.push_back(residual_row(sweep_, at.point, n_map.dot(p_map - at.plane.centre), 1, J));
   }
 
  private:
   SE3 T_map_body(std::size_t i) const {
     return step_.icp.T_map_lidar_linearised * step_.motion.T_end_point(sweep_.t_ns[i]) * T_lidar_body_;
-  }
-  core::ResidualRow row(std::size_t i, double value, double weight, const core::Row6& J) const {
-    core::ResidualRow r;
-    r.t_ns = sweep_.t_ns[i];
-    r.value = static_cast<float>(value);
-    r.weight = static_cast<float>(weight);
-    for (int k = 0; k < 6; ++k) r.jacobian[k] = static_cast<float>(J[k]);
-    r.sensor = sweep_.sensor_of(i);
-    r.point = static_cast<std::uint32_t>(i);
-    return r;
   }
 
   const core::LidarSweep& sweep_;

@@ -2,17 +2,6 @@
 #include "estimators/window_odometry/estimator.h"
 
 namespace tarmac::estimators {
-namespace {
-
-template <class Options>
-std::unique_ptr<Estimator> make(const core::ConfigNode& node, const EstimatorContext& context) {
-  Options options;
-  node.read(options);
-  return std::make_unique<WindowOdometryEstimator>(options, context);
-}
-
-}  // namespace
-
 extern const EstimatorEntry steam_lo;
 const EstimatorEntry steam_lo{
     .name = "steam-lo",
@@ -22,7 +11,7 @@ const EstimatorEntry steam_lo{
         "Burnett et al., Continuous-Time Radar-Inertial and Lidar-Inertial Odometry using a GP Motion Prior, 2024; "
         "upstream 819c607",
     .needs = Needs::lidar,
-    .make = make<SteamLoOptions>,
+    .make = make_with<WindowOdometryEstimator, SteamLoOptions>,
     .describe = describe_with<SteamLoOptions>,
     .resolve = resolve_with<SteamLoOptions>};
 
@@ -32,7 +21,7 @@ const EstimatorEntry steam_lio{
     .summary = "steam-lo with gyroscope and accelerometer",
     .source = "Burnett et al. 2024 and IMU as an Input vs. a Measurement of the State, 2024/25; upstream 819c607",
     .needs = Needs::lidar_and_imu,
-    .make = make<SteamLioOptions>,
+    .make = make_with<WindowOdometryEstimator, SteamLioOptions>,
     .describe = describe_with<SteamLioOptions>,
     .resolve = resolve_with<SteamLioOptions>};
 

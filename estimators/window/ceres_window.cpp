@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "estimators/blocks/ceres_loss.h"
 #include "estimators/window/gravity_direction.h"
 
 namespace tarmac::estimators {
@@ -215,20 +216,6 @@ class MarginalCost final : public ceres::CostFunction {
   VectorXd offset_;
 };
 
-class LossAdaptor final : public ceres::LossFunction {
- public:
-  explicit LossAdaptor(const RobustLoss& loss) : loss_(loss) {}
-  void Evaluate(double s, double out[3]) const override {
-    const RobustLoss::Value value = loss_(s);
-    out[0] = value.rho;
-    out[1] = value.first;
-    out[2] = value.second;
-  }
-
- private:
-  RobustLoss loss_;
-};
-
 /// Blocks that a term looks at; with a margin where a free offset may move it to the neighbours.
 std::vector<std::size_t> blocks_of(const Term& term, const Increments& increments, bool margin) {
   std::set<std::size_t> blocks;
@@ -313,14 +300,14 @@ SolveReport solve_with_ceres(Window& window, const SolveSettings& settings, Cere
     problem.keep([](const auto&) { return true; }, [](const WindowProblem::Stamp&) { return false; });
   Increments increments(window.state(), problem.layout());
   Source source(problem, increments);
-  LossAdaptor accel_loss(window.model().accel_loss), lidar_loss(window.model().lidar_loss);
+  const auto accel_loss = ceres_loss(window.model().accel_loss), lidar_loss = ceres_loss(window.model().lidar_loss);
   ceres::Problem::Options problem_options;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   problem_options.evaluation_callback = &increments;
   ceres::Problem ceres_problem(problem_options);
   for (std::size_t b = 0; b < increments.blocks(); ++b)
     ceres_problem.AddParameterBlock(increments.parameters(b), increments.size(b));
-  add_terms(problem, increments, source, &accel_loss, &lidar_loss, ceres_problem);
+  add_terms(problem, increments, source, accel_loss.get(), lidar_loss.get(), ceres_problem);
   add_marginal_prior(problem, increments, ceres_problem);
 
   ceres::Solver::Summary summary;

@@ -47,18 +47,28 @@ Vector3d VelocityIncrement::velocity(const core::Kinematics& state, StateJacobia
   const Vector3d& lever = T_body_imu.translation();
   const Vector3d turning = state.omega_body.cross(lever);
   J.setZero();
+  if (omit_transport) {
+    const Vector3d nu = R.transpose() * state.v_world;
+    J.middleCols<3>(row::pose + 3) = hat(nu);
+    J.middleCols<3>(row::velocity) = R.transpose();
+    J.middleCols<3>(row::omega) = -hat(lever);
+    return nu + turning;
+  }
   J.middleCols<3>(row::pose + 3) = -R * hat(turning);
   J.middleCols<3>(row::velocity).setIdentity();
   J.middleCols<3>(row::omega) = -R * hat(lever);
   return state.v_world + R * turning;
 }
 
-Vector3d VelocityIncrement::acceleration(const core::Kinematics& state, const Vector3d& f, const Vector3d& bias,
-                                         Matrix3d& by_phi) const {
+VelocityIncrement::Rate VelocityIncrement::rate(const core::Kinematics& state, const Vector3d& f,
+                                                const Vector3d& bias) const {
   const Matrix3d R = state.T_world_body.linear();
   const Vector3d f_body = T_body_imu.linear() * (f - bias);
-  by_phi = -R * hat(f_body);
-  return R * f_body;
+  if (omit_transport) {
+    const Vector3d gravity_body = R.transpose() * gravity_map_m_s2;
+    return {f_body + gravity_body, hat(gravity_body), -T_body_imu.linear(), R.transpose()};
+  }
+  return {R * f_body + gravity_map_m_s2, -R * hat(f_body), -R * T_body_imu.linear(), Matrix3d::Identity()};
 }
 
 }  // namespace tarmac::estimators

@@ -24,18 +24,24 @@ std::vector<IncrementSample> increment_samples(const std::vector<ImuReading>& re
 
 /// With the IMU at l in the body, v_imu = v + R (omega x l):
 ///   r = ( v_imu(t2) - v_imu(t1) - sum ( R_i R_body_imu (f_i - b_i) + g ) dt_i ) / sigma,   sigma^2 = sum s^2 dt_i^2
-/// in the map's axes; s: the accelerometer's deviation.
+/// in the map's axes; s: the accelerometer's deviation. `omit_transport` (for comparison only, upstream STEAM's form):
+///   r = ( nu(t2) - nu(t1) - sum ( R_body_imu (f_i - b_i) + R_i^T g ) dt_i ) / sigma,   nu = R^T v_imu
+/// body-centric, without the term omega x nu by which nu changes when the body turns.
 /// Source: Burnett, Schoellig, Barfoot, Continuous-Time Radar-Inertial and Lidar-Inertial Odometry (2024), velocity
 /// preintegration; the lever arm is ours.
 struct VelocityIncrement {
   core::SE3 T_body_imu = core::SE3::Identity();
+  Eigen::Vector3d gravity_map_m_s2 = Eigen::Vector3d::Zero();  ///< downwards
+  bool omit_transport = false;
 
-  /// v_imu, and its Jacobian by the state.
+  /// v_imu, or nu, and its Jacobian by the state.
   Eigen::Vector3d velocity(const core::Kinematics& state, StateJacobian<3>& J) const;
-  /// What one sample adds per second, without gravity: R R_body_imu (f - b), and its Jacobian by the pose's rotation.
-  /// By the bias: -R R_body_imu.
-  Eigen::Vector3d acceleration(const core::Kinematics& state, const Eigen::Vector3d& f, const Eigen::Vector3d& bias,
-                               Eigen::Matrix3d& by_phi) const;
+  /// What one sample adds per second, and its Jacobians by the pose's rotation, the bias and gravity.
+  struct Rate {
+    Eigen::Vector3d m_s2;
+    Eigen::Matrix3d by_phi, by_bias, by_gravity;
+  };
+  Rate rate(const core::Kinematics& state, const Eigen::Vector3d& f, const Eigen::Vector3d& bias) const;
 };
 
 }  // namespace tarmac::estimators

@@ -16,6 +16,8 @@ void check(const WindowModel& model, const core::ParametricTrajectory& trajector
     throw std::invalid_argument("an accelerometer and smoothness need a trajectory that has an acceleration");
   if ((model.gyro_sigma_rad_s > 0 || model.accel_sigma_m_s2 > 0) && trajectory.has() == core::Derivative::pose)
     throw std::invalid_argument("an IMU needs a trajectory that has a velocity");
+  if (model.sum_stamp_residuals && model.lidar_loss.kind != Loss::standard)
+    throw std::invalid_argument("summed residuals have no robust loss");
 }
 
 Window::Window(WindowModel model, WindowState start) : model_(std::move(model)), state_(std::move(start)) {

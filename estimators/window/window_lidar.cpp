@@ -30,6 +30,9 @@ void WindowProblem::stamp_sum(const WindowState& state, const Stamp& stamp, core
   const core::SE3& T_map_body = jet.state.T_world_body;
   core::Matrix6 H = core::Matrix6::Zero();
   core::Vector6 g = core::Vector6::Zero();
+  const bool summed = model_->sum_stamp_residuals && !factors.distributions;
+  Row6 J_sum = Row6::Zero();
+  double r_sum = 0;
   for (std::size_t k = factors.first[stamp.index]; k < factors.first[stamp.index + 1]; ++k) {
     const LidarFactor& f = factors.factors[k];
     const double scale = f.weight / model_->lidar_sigma_m, scale2 = scale * scale;
@@ -42,11 +45,20 @@ void WindowProblem::stamp_sum(const WindowState& state, const Stamp& stamp, core
     } else {
       Row6 J;
       const double r = PointToPlane{f.p_body, f.q_map, f.n_map}(T_map_body, J);
+      if (summed) {
+        r_sum += scale * r;
+        J_sum += scale * J;
+        continue;
+      }
       const double w = scale2 * model_->lidar_loss(scale2 * r * r).first;
       const core::Vector6 wJ = w * J.transpose();
       H.noalias() += wJ * J;
       g += r * wJ;
     }
+  }
+  if (summed) {
+    H.noalias() = J_sum.transpose() * J_sum;
+    g = r_sum * J_sum.transpose();
   }
   sum.add_pose(jet.first, jet.J.topRows(6), H, g);
 }

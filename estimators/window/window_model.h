@@ -18,10 +18,11 @@ struct WindowModel {
   // IMU
   core::SE3 T_body_imu = core::SE3::Identity();
   double gravity_m_s2 = 9.80665;
-  double gyro_sigma_rad_s = 0;       ///< of one reading, an axis
-  double accel_sigma_m_s2 = 0;       ///< of one reading, an axis; not for trajectories without acceleration
-  bool omit_transport = false;       ///< for comparison only: the accelerometer as R^T(a - g) - omega x (R^T v), which
-                                     ///< forgets the transport term of body-centric velocities (upstream STEAM's form)
+  double gyro_sigma_rad_s = 0;  ///< of one reading, an axis
+  double accel_sigma_m_s2 = 0;  ///< of one reading, an axis; not for trajectories without acceleration
+  /// For comparison only: the accelerometer as R^T(a - g) - omega x (R^T v), which forgets the transport term of
+  /// body-centric velocities; as increments: velocity_increment.h (upstream STEAM's form).
+  bool omit_transport = false;
   RobustLoss accel_loss;             ///< on the whitened norm of one reading (scale: standard deviations)
   double gyro_walk_rad_s2_rthz = 0;  ///< of the bias between knots
   double accel_walk_m_s3_rthz = 0;
@@ -38,6 +39,9 @@ struct WindowModel {
   // LiDAR
   double lidar_sigma_m = 0.05;  ///< of a residual of weight 1
   RobustLoss lidar_loss;        ///< on residuals in sigmas
+  /// For comparison only: a step is that of point-to-plane residuals of one stamp summed before they are squared, where
+  /// opposite ones cancel, while the cost that is watched squares each (upstream STEAM's form). No loss; not by Ceres.
+  bool sum_stamp_residuals = false;
 };
 
 /// Throws std::invalid_argument where the model asks for derivatives that the trajectory does not have.

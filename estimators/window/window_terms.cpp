@@ -155,7 +155,8 @@ void WindowProblem::increment_term(const WindowState& state, const Item& item, s
     squares_by_offset += 2 * sample.dt_s * sample.dt_by_offset;
   }
   const double sigma = model_->accel_sigma_m_s2 * std::sqrt(squares);
-  const VelocityIncrement increment{model_->T_body_imu};
+  const VelocityIncrement increment{model_->T_body_imu, model_->gravity_m_s2 * state.gravity_map,
+                                    model_->omit_transport};
 
   Term& term = out.emplace_back();
   term.clear(3);
@@ -169,24 +170,23 @@ void WindowProblem::increment_term(const WindowState& state, const Item& item, s
   }
   const core::Time middle = t1 + (t2 - t1) / 2;
   const Vector3d bias = bias_at(state.biases, middle).tail<3>();
-  const Vector3d gravity = model_->gravity_m_s2 * state.gravity_map;
-  Matrix3d by_bias = Matrix3d::Zero();
+  Matrix3d by_bias = Matrix3d::Zero(), by_gravity = Matrix3d::Zero();
   Vector3d by_offset = Vector3d::Zero();
   for (const IncrementSample& sample : samples) {
     trajectory.jet(sample.at, Derivative::velocity, jet);
-    Matrix3d by_phi;
-    const Vector3d a = increment.acceleration(jet.state, sample.accel_m_s2, bias, by_phi);
+    const VelocityIncrement::Rate rate = increment.rate(jet.state, sample.accel_m_s2, bias);
     const double share = sample.dt_s / sigma;
-    term.e -= share * (a + gravity);
-    add_columns(jet.first, -share * by_phi * jet.J.middleRows<3>(row::pose + 3), term);
-    by_bias += share * jet.state.T_world_body.linear() * model_->T_body_imu.linear();
-    by_offset -= sample.dt_by_offset / sigma * (a + gravity);
-    if (!sample.kept_at_end) by_offset += share * by_phi * jet.state.omega_body;
+    term.e -= share * rate.m_s2;
+    add_columns(jet.first, -share * rate.by_phi * jet.J.middleRows<3>(row::pose + 3), term);
+    by_bias -= share * rate.by_bias;
+    by_gravity -= share * rate.by_gravity;
+    by_offset -= sample.dt_by_offset / sigma * rate.m_s2;
+    if (!sample.kept_at_end) by_offset += share * rate.by_phi * jet.state.omega_body;
   }
   add_bias(state, middle, 3, by_bias, term);
   if (layout_.gravity >= 0) {
     term.add_border(layout_.gravity, 2) =
-        -core::to_s(t2 - t1) * model_->gravity_m_s2 / sigma * gravity_direction::tangent(state.gravity_map);
+        by_gravity * model_->gravity_m_s2 * gravity_direction::tangent(state.gravity_map);
   }
   if (layout_.offset >= 0) {
     by_offset -= squares_by_offset / (2 * squares) * term.e;

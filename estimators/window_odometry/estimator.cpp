@@ -27,7 +27,9 @@ SweepOutcome WindowOdometryEstimator::add(const core::LidarSweep& sweep) {
                     .status = sweep.empty() ? core::SweepStatus::empty
                                             : (step.lost ? core::SweepStatus::lost : core::SweepStatus::ok),
                     .T_map_body = step.T_map_body_end};
-  outcome.note = note_of(sweep, step);
+  if (step.clipped_stamps > 0)
+    outcome.note =
+        fmt::format("{} keypoints' stamps outside the sweep, moved to its begin or end", step.clipped_stamps);
   if (level_ != core::DiagnosticsLevel::none) {
     outcome.diagnostics = arena_.execute([&] { return record_of(sweep, odometry_, step, level_); });
     stopwatch.lap(kRecordStage);
@@ -35,11 +37,6 @@ SweepOutcome WindowOdometryEstimator::add(const core::LidarSweep& sweep) {
   outcome.diagnostics.index = sweep.index;
   outcome.motion = {std::move(step.motion)};
   return outcome;
-}
-
-std::string WindowOdometryEstimator::note_of(const core::LidarSweep&, const WindowOdometry::Step& step) {
-  if (step.clipped_stamps == 0) return {};
-  return fmt::format("{} keypoints' stamps outside the sweep, moved to its begin or end", step.clipped_stamps);
 }
 
 void WindowOdometryEstimator::finish(core::Estimate& estimate) {

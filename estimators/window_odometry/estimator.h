@@ -19,8 +19,6 @@ class WindowOdometryEstimator : public Estimator {
   void finish(core::Estimate& estimate) override;
 
  private:
-  std::string note_of(const core::LidarSweep& sweep, const WindowOdometry::Step& step);
-
   WindowOdometry odometry_;
   core::DiagnosticsLevel level_;
   tbb::task_arena arena_;

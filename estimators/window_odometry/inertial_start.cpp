@@ -12,7 +12,6 @@ namespace tarmac::estimators {
 using core::Time;
 
 void set_imu(const ImuSettings& settings, const core::Rig& rig, WindowModel& model) {
-  constexpr double kRadPerDeg = 0.017453292519943295;
   model.T_body_imu = rig.imus.at(0).T_body_imu;
   model.gravity_m_s2 = rig.gravity_m_s2;
   model.gyro_sigma_rad_s = settings.gyro_sigma_rad_s;

@@ -1,7 +1,6 @@
 #include "estimators/window_odometry/keypoints.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace tarmac::estimators {
 

@@ -15,8 +15,6 @@ using core::Duration;
 using core::SE3;
 using core::Time;
 
-constexpr double kRadPerDeg = 0.017453292519943295;
-
 core::Vector6 both(double translation, double rotation) {
   core::Vector6 v;
   v << Eigen::Vector3d::Constant(translation), Eigen::Vector3d::Constant(rotation);

@@ -13,13 +13,12 @@ using core::SE3;
 using core::Time;
 using Eigen::Vector3d;
 
-constexpr double kRadPerDeg = 0.017453292519943295;
-
 WindowModel model_of(const WindowOdometrySettings& s, const core::Rig& rig) {
   WindowModel model;
   model.gravity_m_s2 = rig.gravity_m_s2;
   model.lidar_sigma_m = s.lidar.sigma_m;
   model.lidar_loss = {.kind = loss_named(s.lidar.loss), .scale = s.lidar.loss_scale};
+  model.sum_stamp_residuals = s.lidar.sum_stamp_residuals;
   if (s.imu.gyro() && !rig.imus.empty()) set_imu(s.imu, rig, model);
   return model;
 }
@@ -32,7 +31,7 @@ Marginalisation rule_named(const std::string& name) {
 }  // namespace
 
 WindowOdometry::WindowOdometry(const WindowOdometrySettings& settings, const core::Rig& rig)
-    : settings_((settings.check(), settings)),
+    : settings_(settings.checked()),
       rig_(rig),
       T_body_lidar_(rig.lidars.at(0).T_body_lidar),
       model_(settings.motion, rig.gravity_m_s2),

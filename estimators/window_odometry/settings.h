@@ -5,9 +5,12 @@
 #include <vector>
 
 #include "core/options.h"
+#include "estimators/blocks/elastic_options.h"
 #include "estimators/dead_reckoning/options.h"
 
 namespace tarmac::estimators {
+
+inline constexpr double kRadPerDeg = 0.017453292519943295;
 
 /// How the motion is parametrised, and what is expected of it before any measurement.
 struct MotionSettings {
@@ -55,25 +58,7 @@ struct MotionSettings {
   }
 };
 
-struct SamplingSettings {
-  std::int64_t random_seed = 0;
-  double min_range_m = 0, max_range_m = 100;
-  int startup_sweeps = 20;
-  double sample_cell_m = 0.5, startup_sample_cell_m = 0.2;
-  double keypoint_cell_m = 1.5, startup_keypoint_cell_m = 1.0;
-
-  void visit(core::OptionVisitor& v) {
-    v("random_seed", random_seed, "of the choice of one point a cell");
-    v("min_range_m", min_range_m, "points at or below this range are left out", {.at_least = 0});
-    v("max_range_m", max_range_m, "points at or beyond this range are left out", {.above = 0});
-    v("startup_sweeps", startup_sweeps, "number of first sweeps under the start-up values", {.at_least = 0});
-    v("sample_cell_m", sample_cell_m, "one random point of each such cell goes on to keypoints and map",
-      {.at_least = 0.01});
-    v("startup_sample_cell_m", startup_sample_cell_m, "the same during start-up", {.at_least = 0.01});
-    v("keypoint_cell_m", keypoint_cell_m, "one of those of each such cell is a keypoint", {.at_least = 0.01});
-    v("startup_keypoint_cell_m", startup_keypoint_cell_m, "the same during start-up", {.at_least = 0.01});
-  }
-};
+using SamplingSettings = ElasticSamplingOptions;
 
 struct MapSettings {
   std::string kind = "points";
@@ -97,16 +82,17 @@ struct MapSettings {
   }
 };
 
-struct LidarSettings {
+struct LidarSettings : NeighbourOptions {
   std::string residual = "point-to-plane";
   double sigma_m = 0.05;
   std::string loss = "cauchy";
   double loss_scale = 2;
-  int max_neighbours = 20, min_neighbours = 10;
-  int voxel_reach = 1, startup_voxel_reach = 2;
   double planarity_power = 2;
   double max_plane_distance_m = 0.5;
   int min_distribution_points = 6;
+  bool sum_stamp_residuals = false;
+
+  LidarSettings() { min_neighbours = 10; }
 
   void visit(core::OptionVisitor& v) {
     v.choice("residual", residual, {"point-to-plane", "point-to-distribution"},
@@ -114,17 +100,15 @@ struct LidarSettings {
     v("sigma_m", sigma_m, "standard deviation of a residual of full weight", {.above = 0});
     v.choice("loss", loss, {"standard", "cauchy", "huber"}, "robust loss");
     v("loss_scale", loss_scale, "its scale, in standard deviations", {.above = 0});
-    v("max_neighbours", max_neighbours, "map points that a plane is fitted to, at most",
-      {.at_least = 3, .at_most = 64});
-    v("min_neighbours", min_neighbours, "keypoints with fewer are left out", {.at_least = 3, .at_most = 64});
-    v("voxel_reach", voxel_reach, "voxels searched each way", {.at_least = 1, .at_most = 8});
-    v("startup_voxel_reach", startup_voxel_reach, "the same during start-up", {.at_least = 1, .at_most = 8});
+    NeighbourOptions::visit(v);
     v("planarity_power", planarity_power, "a residual's weight is its neighbourhood's planarity to this power",
       {.at_least = 0});
     v("max_plane_distance_m", max_plane_distance_m, "keypoints farther off their plane are left out; 0: no limit",
       {.at_least = 0});
     v("min_distribution_points", min_distribution_points, "distributions of fewer points are not used",
       {.at_least = 4, .at_most = 1000});
+    v("sum_stamp_residuals", sum_stamp_residuals,
+      "for comparison only: residuals of one stamp are summed before they are squared (upstream STEAM's form)");
   }
 };
 
@@ -235,8 +219,8 @@ struct WindowOdometrySettings {
       "how far from rest the start may be (rotation: a fifth of it in rad/s)", {.above = 0});
   }
 
-  /// Throws InputError where settings contradict each other, naming the two.
-  void check() const;
+  /// Themselves. Throws InputError where they contradict each other or one of them can have no effect, naming it.
+  const WindowOdometrySettings& checked() const;
 };
 
 }  // namespace tarmac::estimators

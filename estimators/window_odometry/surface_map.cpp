@@ -25,10 +25,6 @@ std::variant<VoxelMap, DistributionMap> make_map(const MapSettings& map, const L
 SurfaceMap::SurfaceMap(const MapSettings& map, const LidarSettings& lidar)
     : map_settings_(map), lidar_(lidar), map_(make_map(map, lidar)) {}
 
-bool SurfaceMap::empty() const {
-  return std::visit([](const auto& map) { return map.empty(); }, map_);
-}
-
 void SurfaceMap::add(std::span<const Vector3d> points_map) {
   std::visit(
       [&](auto& map) {

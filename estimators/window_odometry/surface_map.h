@@ -25,7 +25,6 @@ class SurfaceMap {
  public:
   SurfaceMap(const MapSettings& map, const LidarSettings& lidar);
 
-  bool empty() const;
   void add(std::span<const Eigen::Vector3d> points_map);
   void remove_far(const Eigen::Vector3d& centre_map);
 

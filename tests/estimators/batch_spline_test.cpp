@@ -95,5 +95,27 @@ TEST(BatchSpline, RefusesAStartThatKnowsNoAttitude) {
   EXPECT_THROW(BatchSpline(options, EstimatorContext{.rig = tests::room_rig()}), core::InputError);
 }
 
+TEST(BatchSpline, RefusesOptionsOfOdometriesThatHaveNoEffectOnIt) {
+  const auto message = [](auto change) -> std::string {
+    BatchSplineOptions options;
+    change(options);
+    try {
+      BatchSpline(options, EstimatorContext{.rig = tests::room_rig()});
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  EXPECT_EQ(message([](BatchSplineOptions&) {}), "taken");
+  EXPECT_EQ(message([](BatchSplineOptions& o) { o.map.radius_m = 50; }).find("map.radius_m"), 0u);
+  EXPECT_EQ(message([](BatchSplineOptions& o) { o.map.delay_sweeps = 1; }).find("map.delay_sweeps"), 0u);
+  EXPECT_EQ(message([](BatchSplineOptions& o) { o.lidar.startup_voxel_reach = 3; }).find("lidar.startup_voxel"), 0u);
+  EXPECT_EQ(message([](BatchSplineOptions& o) {
+              o.imu.use = "none";
+              o.imu.free_time_offset = true;
+            }).find("imu.free_time_offset"),
+            0u);
+}
+
 }  // namespace
 }  // namespace tarmac::estimators

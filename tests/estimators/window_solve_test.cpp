@@ -85,10 +85,10 @@ TEST_P(ImuAlone, TellsBiasesGravityAndOffsetWhereSomePosesAreKnown) {
 
 INSTANTIATE_TEST_SUITE_P(Splines, ImuAlone, testing::Values(Lively::spline_split, Lively::spline_se3));
 
-TEST(VelocityIncrements, AreThoseOfTheMotionToSecondOrder) {
+TEST(VelocityIncrements, AreThoseOfTheMotionToSecondOrderAndNotWithoutTheTransportTerm) {
   const auto truth = lively(Lively::spline_se3, 12, 1);
   const Vector3d gravity = Vector3d(0.05, -0.08, -1).normalized();
-  const auto error_m_s = [&](Duration period) {
+  const auto error_m_s = [&](Duration period, bool omit_transport) {
     WindowState state;
     state.trajectory = truth->clone();
     state.biases = {{kLivelyBegin, kBias}};
@@ -97,6 +97,7 @@ TEST(VelocityIncrements, AreThoseOfTheMotionToSecondOrder) {
     WindowModel model = imu_model();
     model.gyro_sigma_rad_s = 0;
     model.accel_as_increments = true;
+    model.omit_transport = omit_transport;
     Window window(model, std::move(state));
     // Samples in the middles of the parts they stand for.
     add_ideal_readings(window, *truth, gravity, kLivelyBegin + Duration(4'000'003) + period / 2,
@@ -115,9 +116,11 @@ TEST(VelocityIncrements, AreThoseOfTheMotionToSecondOrder) {
     EXPECT_GE(increments, 6);
     return std::sqrt(sum / increments);
   };
-  const double coarse = error_m_s(Duration(10'000'000)), fine = error_m_s(Duration(5'000'000));
+  const double coarse = error_m_s(Duration(10'000'000), false), fine = error_m_s(Duration(5'000'000), false);
   EXPECT_LT(coarse, 5e-3) << "of increments of about 1 m/s";
   EXPECT_GT(coarse / fine, 3.5);
+  // omega x v of about 1 rad/s and 1 m/s over 0.1 s.
+  EXPECT_GT(error_m_s(Duration(5'000'000), true), 0.02);
 }
 
 TEST(VelocityIncrements, ShareTimeAmongReadingsAndRefuseGaps) {
@@ -253,6 +256,34 @@ TEST(Window, ModelsThatATrajectoryCannotServeAreRefused) {
   EXPECT_THROW(window.solve({}), std::invalid_argument);
   EXPECT_THROW(window.marginalise_before(window.trajectory().end() + Duration(1'000'000'000), Marginalisation::plain),
                std::invalid_argument);
+}
+
+/// Each plane seen from both sides: summed before squaring nothing is left of it, squared each it counts twice.
+TEST(Window, SummedResidualsOfAStampCancelWhereNormalsAreOpposite) {
+  const auto step = [](bool summed, bool with_lidar) {
+    Window window = noisy_window(Lively::gp_wnoa, 6, false);
+    LidarFactors factors = *window.lidar(0), mirrored = factors;
+    mirrored.factors.clear();
+    for (std::uint32_t& first : mirrored.first) first *= 2;
+    for (const LidarFactor& factor : factors.factors) {
+      LidarFactor back = factor;
+      back.n_map = -back.n_map;
+      mirrored.factors.push_back(factor);
+      mirrored.factors.push_back(back);
+    }
+    window.model().sum_stamp_residuals = summed;
+    window.set_lidar(0, with_lidar ? mirrored : LidarFactors{});
+    VectorXd x;
+    EXPECT_TRUE(window.normal_equations().solve_with_identity(1, x));
+    return x;
+  };
+  const VectorXd without = step(false, false);
+  EXPECT_LT((step(true, true) - without).norm(), 1e-9 * without.norm());
+  EXPECT_GT((step(false, true) - without).norm(), 0.1 * without.norm());
+  Window window = noisy_window(Lively::gp_wnoa, 6, false);
+  window.model().sum_stamp_residuals = true;
+  window.model().lidar_loss = {Loss::cauchy, 2, 0};
+  EXPECT_THROW(window.solve({}), std::invalid_argument);
 }
 
 TEST(Window, StampsThatTheTrajectoryDoesNotCoverAreCounted) {
