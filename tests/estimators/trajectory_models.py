@@ -4,9 +4,11 @@
     tarmac sweep trajectory-models -o out-models
     tests/estimators/trajectory_models.py out-models --tarmac build/release/tarmac --figure docs/img/trajectory-models.svg
 
-Prints a Markdown table a drive: for every method the geometric mean over seeds of deskew error and one-sweep error with a 95 %
-interval (of the mean logarithm, by Student's t), ATE, and what a sweep costs; and, below, the paired ratio of every method
-with an IMU to ct-icp in deskew error (seed by seed).
+Prints a Markdown table a drive: for every method its degrees of freedom a sweep; the geometric mean over seeds of deskew error and
+one-sweep error with a 95 % interval (of the mean logarithm, by Student's t), ATE, condition of the 6-DOF block, by what factor
+its stated deviations are too small and how many poses their 95 % ellipsoids cover, and what a sweep costs; and, below, the
+paired ratio of every method with an IMU to ct-icp in deskew error (seed by seed). The figure has a panel a drive: deskew
+error by method above, over degrees of freedom below.
 
 Exit code 1 when a cell is missing or did not end well.
 """
@@ -18,7 +20,16 @@ import subprocess
 import sys
 import tempfile
 
-METRICS = ["deskew_error_rms_m", "rpe_1sweep_trans_rmse_m", "ate_se3_rmse_m", "sweep_time_p50_ms"]
+DESKEW, STEP, ATE, TIME = "deskew_error_rms_m", "rpe_1sweep_trans_rmse_m", "ate_se3_rmse_m", "sweep_time_p50_ms"
+CONDITION, ROOT, COVERED = "solve_condition_6dof_median", "anees_root_per_dof", "nees_covered_percent"
+DEGENERATE = "oracle_degenerate_percent"
+METRICS = [DESKEW, STEP, ATE, TIME, CONDITION, ROOT, COVERED, DEGENERATE]
+# Unknowns of the motion a sweep of 0.1 s: six a pose or control point, and as many for each derivative of a knot.
+DOF = {"rigid": 6, "constant-velocity": 6, "two-pose-slerp": 12, "two-pose-screw": 12, "spline-100ms": 6, "spline-50ms": 12,
+       "spline-25ms": 24, "spline-per-sweep": 6, "wnoa": 12, "wnoj": 18, "singer": 18, "two-pose-slerp-imu": 12,
+       "two-pose-screw-imu": 12, "spline-100ms-imu": 6, "spline-50ms-imu": 12, "spline-25ms-imu": 24, "wnoa-imu": 24,
+       "wnoj-imu": 36, "singer-imu": 36, "spline-25ms-imu-offset": 24, "singer-imu-offset": 36, "kiss-icp": 6, "ct-icp": 12,
+       "kiss-icp-imu": 6, "steam-lo": 12, "steam-lio": 12, "batch-spline": 24}
 FIELD = "estimators.composed.profile="
 STUDENT_975 = {1: 12.706, 2: 4.303, 3: 3.182, 4: 2.776, 5: 2.571, 6: 2.447, 7: 2.365, 8: 2.306, 9: 2.262}
 
@@ -54,66 +65,113 @@ def mean(values):
     return math.exp(middle), math.exp(middle - half), math.exp(middle + half)
 
 
-def text(values, scale):
+def with_digits(value):
+    return f"{value:.2f}" if value < 10 else f"{value:.1f}" if value < 100 else f"{value:.0f}"
+
+
+def text(values, scale, interval=True):
     if not values:
-        return "n/a"
+        return ""
     m, low, high = mean(values.values())
-    digits = 2 if m * scale < 10 else 1 if m * scale < 100 else 0
-    f = f"{{:.{digits}f}}"
-    return f.format(m * scale) + ("" if low is None else f" ({f.format(low * scale)} to {f.format(high * scale)})")
+    if low is None or not interval:
+        return with_digits(m * scale)
+    return f"{with_digits(m * scale)} ({with_digits(low * scale)} to {with_digits(high * scale)})"
+
+
+def average(values):
+    return f"{sum(values.values()) / len(values):.0f}" if values else ""
 
 
 def print_drive(drive, methods):
-    seeds = sorted({s for cell in methods.values() for s in cell[METRICS[0]]})
-    print(f"### {drive}\n\nSeeds {', '.join(map(str, seeds))}.\n")
-    print("| method | deskew error [mm] | one-sweep error [mm] | ATE [m] | ms a sweep |\n|---|---|---|---|---|")
+    seeds = sorted({s for cell in methods.values() for s in cell[DESKEW]})
+    degenerate = average(next(iter(methods.values()))[DEGENERATE])
+    print(f"### {drive}\n\nSeeds {', '.join(map(str, seeds))}; {degenerate} % of the sweeps degenerate by the oracle.\n")
+    print("| method | DOF | deskew error [mm] | one-sweep error [mm] | ATE [m] | condition | sigmas too small | covered [%] | ms |")
+    print("|---|---:|---|---|---:|---:|---:|---:|---:|")
     for method, cell in methods.items():
-        print(f"| `{method}` | {text(cell['deskew_error_rms_m'], 1e3)} | {text(cell['rpe_1sweep_trans_rmse_m'], 1e3)} | "
-              f"{mean(cell['ate_se3_rmse_m'].values())[0]:.3f} | {mean(cell['sweep_time_p50_ms'].values())[0]:.0f} |")
+        print(f"| `{method}` | {DOF.get(method, 'by motion')} | {text(cell[DESKEW], 1e3)} | {text(cell[STEP], 1e3)} | "
+              f"{mean(cell[ATE].values())[0]:.3f} | {text(cell[CONDITION], 1, False)} | {text(cell[ROOT], 1, False)} | "
+              f"{average(cell[COVERED])} | {text(cell[TIME], 1, False)} |")
     print()
     if "ct-icp" not in methods:
         return
-    base = methods["ct-icp"]["deskew_error_rms_m"]
+    base = methods["ct-icp"][DESKEW]
     print("Deskew error over ct-icp's, seed by seed: " + "; ".join(
-        f"`{m}` {text({s: v / base[s] for s, v in cell['deskew_error_rms_m'].items() if s in base}, 1)}"
+        f"`{m}` {text({s: v / base[s] for s, v in cell[DESKEW].items() if s in base}, 1)}"
         for m, cell in methods.items() if "imu" in m or m == "steam-lio") + ".\n")
 
 
+class Panels:
+    """An SVG with a column of panels a drive, deskew error from left to right on one logarithmic axis."""
+
+    LEFT, WIDTH, GAP = 175, 150, 14
+
+    def __init__(self, drives, height, title):
+        values = [v for cells in drives.values() for c in cells.values() for v in c[DESKEW].values()]
+        self.low, self.high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
+        total = self.LEFT + (self.WIDTH + self.GAP) * len(drives) + 10
+        self.parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {total} {height}" font-family="sans-serif" '
+                      f'font-size="11" fill="#222"><rect width="{total}" height="{height}" fill="#fff"/>',
+                      f'<text x="12" y="22" font-size="14">{title}</text>']
+
+    def left(self, column):
+        return self.LEFT + column * (self.WIDTH + self.GAP)
+
+    def x(self, column, value):
+        value = min(max(value, 10.0 ** self.low), 10.0 ** self.high)
+        return self.left(column) + self.WIDTH * (math.log10(value) - self.low) / (self.high - self.low)
+
+    def text(self, x, y, words, anchor="middle"):
+        self.parts.append(f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{words}</text>')
+
+    def frame(self, column, top, height):
+        self.parts.append(f'<rect x="{self.left(column)}" y="{top}" width="{self.WIDTH}" height="{height}" fill="none" '
+                          'stroke="#888"/>')
+        for decade in range(self.low, self.high + 1):
+            at = self.x(column, 10.0 ** decade)
+            self.parts.append(f'<line x1="{at:.1f}" y1="{top}" x2="{at:.1f}" y2="{top + height}" stroke="#ddd"/>')
+            self.text(at, top + height + 14, {-3: "1 mm", -2: "1 cm", -1: "10 cm", 0: "1 m"}.get(decade, f"1e{decade} m"))
+
+    def dot(self, column, y, method, values):
+        m, a, b = mean(values)
+        colour = "#d70" if "imu" in method or method in ("steam-lio", "batch-spline") else "#146"
+        if a is not None:
+            self.parts.append(f'<line x1="{self.x(column, a):.1f}" y1="{y:.1f}" x2="{self.x(column, b):.1f}" y2="{y:.1f}" '
+                              f'stroke="{colour}" stroke-width="2"/>')
+        self.parts.append(f'<circle cx="{self.x(column, m):.1f}" cy="{y:.1f}" r="3.5" fill="{colour}">'
+                          f'<title>{method}: {1e3 * m:.2f} mm</title></circle>')
+
+    def write(self, path):
+        with open(path, "w") as file:
+            file.write("\n".join(self.parts + ["</svg>", ""]))
+
+
 def write_figure(path, drives):
-    """A row of dots a method, a panel a drive: deskew error on a logarithmic axis, interval as a bar."""
     methods = list(dict.fromkeys(m for cells in drives.values() for m in cells))
-    row, top, left, width = 17, 60, 175, 150
-    height = top + row * len(methods) + 50
-    values = [v for cells in drives.values() for c in cells.values() for v in c["deskew_error_rms_m"].values()]
-    low, high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
-    total = left + (width + 14) * len(drives) + 10
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {total} {height}" font-family="sans-serif" font-size="11" '
-             f'fill="#222"><rect width="{total}" height="{height}" fill="#fff"/>',
-             '<text x="12" y="22" font-size="14">Deskew error [m] by trajectory model: geometric mean over seeds, bar: 95 % '
-             'interval; orange: with IMU</text>']
+    row, top = 17, 60
+    upper = row * len(methods)
+    lower_top, lower = top + upper + 60, 150
+    panels = Panels(drives, lower_top + lower + 30, "Deskew error by trajectory model (above) and over its degrees of freedom "
+                    "a sweep (below): geometric mean over seeds, bar: 95 % interval; orange: with IMU")
+    levels = sorted(set(DOF.values()))
+    height_of = {dof: lower_top + lower * (1 - (k + 0.5) / len(levels)) for k, dof in enumerate(levels)}
     for k, method in enumerate(methods):
-        parts.append(f'<text x="{left - 8}" y="{top + row * (k + 0.7):.1f}" text-anchor="end">{method}</text>')
-    for d, (drive, cells) in enumerate(drives.items()):
-        x0 = left + d * (width + 14)
-        x = lambda v: x0 + width * (math.log10(v) - low) / (high - low)
-        parts.append(f'<text x="{x0 + width / 2}" y="{top - 8}" text-anchor="middle">{drive}</text>')
-        parts.append(f'<rect x="{x0}" y="{top}" width="{width}" height="{row * len(methods)}" fill="none" stroke="#888"/>')
-        for decade in range(low, high + 1):
-            at = x(10.0 ** decade)
-            parts.append(f'<line x1="{at:.1f}" y1="{top}" x2="{at:.1f}" y2="{top + row * len(methods)}" stroke="#ddd"/>')
-            parts.append(f'<text x="{at:.1f}" y="{top + row * len(methods) + 14}" text-anchor="middle">1e{decade}</text>')
+        panels.text(panels.LEFT - 8, top + row * (k + 0.7), method, "end")
+    for dof, y in height_of.items():
+        panels.text(panels.LEFT - 8, y + 4, f"{dof} DOF", "end")
+    for column, (drive, cells) in enumerate(drives.items()):
+        panels.text(panels.left(column) + panels.WIDTH / 2, top - 8, drive)
+        panels.frame(column, top, upper)
+        panels.frame(column, lower_top, lower)
         for k, method in enumerate(methods):
-            if method not in cells or not cells[method]["deskew_error_rms_m"]:
+            if method not in cells or not cells[method][DESKEW]:
                 continue
-            m, a, b = mean(cells[method]["deskew_error_rms_m"].values())
-            y = top + row * (k + 0.5)
-            colour = "#d70" if "imu" in method or method in ("steam-lio", "batch-spline") else "#146"
-            if a is not None:
-                a, b = max(a, 10.0 ** low), min(b, 10.0 ** high)
-                parts.append(f'<line x1="{x(a):.1f}" y1="{y}" x2="{x(b):.1f}" y2="{y}" stroke="{colour}" stroke-width="2"/>')
-            parts.append(f'<circle cx="{x(m):.1f}" cy="{y}" r="3.5" fill="{colour}"/>')
-    with open(path, "w") as file:
-        file.write("\n".join(parts + ["</svg>", ""]))
+            values = cells[method][DESKEW].values()
+            panels.dot(column, top + row * (k + 0.5), method, values)
+            if method in DOF:
+                # Beside each other where degrees of freedom are equal.
+                panels.dot(column, height_of[DOF[method]] + 0.5 * (k % 17 - 8), method, values)
+    panels.write(path)
 
 
 def main():

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "estimators/window/ceres_window.h"
+#include "estimators/window/state_jacobian.h"
 #include "estimators/window/velocity_increment.h"
 #include "tests/estimators/lively_window.h"
 #include "tests/support/numeric.h"
@@ -245,6 +246,77 @@ TEST_P(WithCeres, SlidingStaysWithinASmallPartOfASigmaOfTheBatch) {
 
 INSTANTIATE_TEST_SUITE_P(Models, WithCeres,
                          testing::Values(Lively::spline_split, Lively::spline_se3, Lively::gp_wnoa, Lively::gp_wnoj));
+
+struct Spaced {
+  core::GpModel model;
+  int spacing_ms;
+  /// Of the covariance, in its own standard deviations. Normal equations square the condition of a process whose state
+  /// has an acceleration: with closer knots digits are lost.
+  double covariance = 1e-9;
+};
+void PrintTo(const Spaced& s, std::ostream* out) {
+  const char* names[] = {"wnoa", "wnoj", "singer"};
+  *out << names[static_cast<int>(s.model)] << "_" << s.spacing_ms << "ms";
+}
+
+/// LiDAR and IMU on a process with knots so far apart, at the minimum of its cost.
+Window solved_window(const Spaced& spaced) {
+  const auto motion = lively(Lively::spline_se3, 12, 1);
+  core::GpPrior prior;
+  prior.model = spaced.model;
+  const double density[] = {5, 1000, 1e5};
+  prior.qc.setConstant(density[static_cast<int>(spaced.model)]);
+  if (spaced.model == core::GpModel::singer) prior.rate.setConstant(10);
+  const Duration spacing = std::chrono::milliseconds(spaced.spacing_ms);
+  std::vector<core::GpKnot> knots;
+  for (Time t = kLivelyBegin; t <= motion->end(); t += spacing) knots.push_back(core::gp_knot(t, motion->at(t)));
+  WindowModel model = imu_model();
+  model.free_imu_offset = model.free_gravity = false;
+  if (spaced.model == core::GpModel::wnoa) model.accel_sigma_m_s2 = 0;
+  WindowState state;
+  state.trajectory = std::make_unique<core::GpTrajectory>(prior, knots);
+  state.biases = {{kLivelyBegin, kBias}};
+  state.gravity_map = Vector3d(0.05, -0.08, -1).normalized();
+  state.imu_offset_s = kOffset_s;
+  Window window(model, std::move(state));
+  add_ideal_readings(window, *motion, window.state().gravity_map, kLivelyBegin, knots.back().t, Duration(5'000'000));
+  window.set_lidar(0, lively_factors(*motion, kLivelyBegin, knots.back().t, 60, 4, 0.02, false, 1));
+  window.add_anchor(kLivelyBegin, motion->at(kLivelyBegin), pose_sigma(0.01));
+  window.add_bias_anchor(0, kBias, Vector6::Constant(0.5));
+  EXPECT_TRUE(window.solve(kToTheEnd).ok);
+  EXPECT_TRUE(window.solve({.max_iterations = 5, .relative_decrease = 0, .absolute_decrease = 0}).ok);
+  return window;
+}
+
+class AtTheMinimum : public testing::TestWithParam<Spaced> {};
+
+/// Everything is linearised where it was, so that only arithmetic can tell a window from the batch.
+TEST_P(AtTheMinimum, WhatIsMarginalisedChangesNeitherMeanNorCovariance) {
+  Window window = solved_window(GetParam());
+  const Time t = kLivelyBegin + (window.trajectory().end() - kLivelyBegin) * 3 / 4;
+  const core::Derivative upto = window.trajectory().has();
+  const MatrixXd P = window.covariance(t, upto);
+  const core::Kinematics before = window.trajectory().at(t);
+  for (int part = 1; part <= 5; ++part)
+    window.marginalise_before(kLivelyBegin + (t - kLivelyBegin) * part / 6, Marginalisation::plain);
+  const MatrixXd P_window = window.covariance(t, upto);
+  ASSERT_EQ(P_window.rows(), P.rows());
+  ASSERT_TRUE(window.solve({.max_iterations = 3}).ok);
+  const VectorXd moved = difference(before, window.trajectory().at(t)).head(P.rows());
+  // Units differ from row to row: compared in standard deviations.
+  const VectorXd sigma = P.diagonal().cwiseSqrt();
+  const MatrixXd scale = sigma.cwiseInverse().asDiagonal();
+  EXPECT_LT((scale * (P - P_window) * scale).cwiseAbs().maxCoeff(), GetParam().covariance);
+  EXPECT_LT(moved.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-7);
+}
+
+INSTANTIATE_TEST_SUITE_P(Knots, AtTheMinimum,
+                         testing::Values(Spaced{core::GpModel::wnoa, 100}, Spaced{core::GpModel::wnoa, 20},
+                                         Spaced{core::GpModel::wnoj, 100}, Spaced{core::GpModel::wnoj, 50, 1e-8},
+                                         Spaced{core::GpModel::wnoj, 20, 1e-7}, Spaced{core::GpModel::wnoj, 10, 3e-6},
+                                         Spaced{core::GpModel::singer, 100}, Spaced{core::GpModel::singer, 50, 1e-8},
+                                         Spaced{core::GpModel::singer, 20, 1e-7},
+                                         Spaced{core::GpModel::singer, 10, 3e-6}));
 
 TEST(Window, ModelsThatATrajectoryCannotServeAreRefused) {
   WindowState state;
