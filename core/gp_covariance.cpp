@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <stdexcept>
 
 #include "core/gp_trajectory.h"
@@ -43,7 +44,41 @@ Derivative highest(const GpPrior& prior) {
   return prior.model == GpModel::wnoa ? Derivative::velocity : Derivative::acceleration;
 }
 
+/// L with L L^T the matrix, which is positive semi-definite but for rounding; judged in units of its own deviations.
+GpBlock root_of(const GpBlock& noise) {
+  const auto sigma = noise.diagonal().cwiseMax(0).cwiseSqrt().eval();
+  const auto inverse = sigma.unaryExpr([](double s) { return s > 0 ? 1 / s : 0; }).eval();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * noise * inverse.asDiagonal());
+  return sigma.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+}
+
+/// M L: the covariance of the state (pose, varpi[, varpi']) at d with both knots held is this times its transpose.
+GpJacobian conditional_root(const GpPrior& prior, const GpInterval& interval, double d, Derivative upto) {
+  const int n = static_cast<int>(upto) + 1;
+  GpJacobian L = GpJacobian::Zero(6 * n, 6 * n);
+  for (int axis = 0; axis < 6; ++axis) {
+    const GpBlock root = root_of(prior.qc[axis] * interval.axis(axis).conditional_noise(d).topLeftCorner(n, n));
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) L(6 * i + axis, 6 * j + axis) = root(i, j);
+    }
+  }
+  return state_by_gamma(prior.model, interval.local(d, interval.weights(d)), upto) * L;
+}
+
 }  // namespace
+
+Eigen::MatrixXd GpTrajectory::conditional_covariance(Time t, Derivative upto) const {
+  Eigen::MatrixXd out = ParametricTrajectory::conditional_covariance(t, upto);
+  const std::size_t k = interval_at(t);
+  if (t == knots_[k].t || t == end()) return out;
+  const Derivative own = std::min(upto, highest(prior_));
+  const double d = since_knot(k, t);
+  StateJet jet;
+  world_rows(intervals_[k].state(d), conditional_root(prior_, intervals_[k], d, own), jet);
+  const Eigen::MatrixXd root = jet.J.topRows(state_row::filled(own));
+  out.topLeftCorner(root.rows(), root.rows()) = root * root.transpose();
+  return out;
+}
 
 GpCovariance GpTrajectory::covariance(Time t, const Eigen::MatrixXd& joint) const {
   check_span(t);
@@ -58,15 +93,8 @@ GpCovariance GpTrajectory::covariance(Time t, const Eigen::MatrixXd& joint) cons
   const Derivative upto = highest(prior_);
   GpKnot unused;
   const Eigen::MatrixXd J = jacobians_[k].state(interval, d, upto, unused);
-  const Eigen::MatrixXd M = state_by_gamma(prior_.model, interval.local(d, interval.weights(d)), upto);
-  Eigen::MatrixXd between = Eigen::MatrixXd::Zero(size, size);
-  for (int axis = 0; axis < 6; ++axis) {
-    const GpBlock noise = prior_.qc[axis] * interval.axis(axis).conditional_noise(d);
-    for (int i = 0; i < prior_.order(); ++i) {
-      for (int j = 0; j < prior_.order(); ++j) between(6 * i + axis, 6 * j + axis) = noise(i, j);
-    }
-  }
-  return checked(J * joint * J.transpose() + M * between * M.transpose());
+  const Eigen::MatrixXd root = conditional_root(prior_, interval, d, upto);
+  return checked(J * joint * J.transpose() + root * root.transpose());
 }
 
 /// The state after d is T Exp(xi) with gamma = Phi(d) gamma_1 + noise of covariance Q(d).

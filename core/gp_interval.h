@@ -109,4 +109,7 @@ class GpIntervalJacobian {
   Matrix6 zeta_by_varpi2_ = Matrix6::Zero();
 };
 
+/// Rows of core::state_row from those of (pose, varpi, varpi') at `s`: v = R nu, a = R (nu' + omega x nu).
+void world_rows(const GpKnot& s, const GpJacobian& body, StateJet& jet);
+
 }  // namespace tarmac::core

@@ -28,7 +28,8 @@ void check_spacing(Time before, Time after) {
   }
 }
 
-/// Rows of core::state_row from those of (pose, varpi, varpi') at `s`: v = R nu, a = R (nu' + omega x nu).
+}  // namespace
+
 void world_rows(const GpKnot& s, const GpJacobian& body, StateJet& jet) {
   const Eigen::Index columns = body.cols();
   jet.J.resize(state_row::count, columns);
@@ -46,8 +47,6 @@ void world_rows(const GpKnot& s, const GpJacobian& body, StateJet& jet) {
            so3::hat(a_body) * body.middleRows<3>(3));
   jet.J.middleRows<3>(state_row::alpha) = body.middleRows<3>(15);
 }
-
-}  // namespace
 
 GpTrajectory::GpTrajectory(GpPrior prior, std::vector<GpKnot> knots)
     : prior_(prior), groups_(group_axes(prior)), knots_(std::move(knots)) {

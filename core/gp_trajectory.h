@@ -64,6 +64,8 @@ class GpTrajectory final : public ParametricTrajectory {
   int priors() const override { return blocks() - 1; }
   /// e = gamma_2 - Phi gamma_1, information Q^-1, J exact.
   void prior(int i, PriorJet& jet) const override;
+  /// Zero at knots. Of wnoa the rows of acceleration, which is no part of its state, are zero.
+  Eigen::MatrixXd conditional_covariance(Time t, Derivative upto) const override;
 
   /// Adds knots at `knots` with the process's mean, and one at `end` should they end before it. `begin` must not lie
   /// before the first knot.

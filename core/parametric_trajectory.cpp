@@ -10,6 +10,10 @@ void ParametricTrajectory::poses(std::span<const Time> ascending, std::span<SE3>
   }
 }
 
+Eigen::MatrixXd ParametricTrajectory::conditional_covariance(Time, Derivative upto) const {
+  return Eigen::MatrixXd::Zero(state_row::filled(upto), state_row::filled(upto));
+}
+
 void ParametricTrajectory::prior(int, PriorJet&) const {
   throw std::logic_error("this trajectory has no priors of its own");
 }

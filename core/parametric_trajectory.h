@@ -82,6 +82,9 @@ class ParametricTrajectory : public SmoothTrajectory {
   /// Priors that are part of the model (a Gaussian process's): prior i ties block i to block i + 1.
   virtual int priors() const { return 0; }
   virtual void prior(int i, PriorJet& jet) const;
+  /// Covariance of the state at t when all parameters are held, rows filled by `upto`: what a Gaussian process may do
+  /// between two knots. Zero for motions that their parameters determine. To it comes J P J^T.
+  virtual Eigen::MatrixXd conditional_covariance(Time t, Derivative upto) const;
 
   /// Grows so that [begin, end] is covered, moving on as the model itself expects to (at constant velocity, or as the
   /// process's mean). `knots`: times after the last knot, ascending, the last at or after `end`; models of one or two

@@ -85,7 +85,16 @@ Kinematics SweepwiseTrajectory::at(Time t) const {
 }
 
 void SweepwiseTrajectory::jet(Time t, Derivative upto, StateJet& jet) const {
-  const Sweep& sweep = found(t);
+  fill(found(t), t, upto, jet);
+}
+
+SE3 SweepwiseTrajectory::pose_in(const Sweep& sweep, Time t) const {
+  StateJet jet_at_t;
+  fill(sweep, t, Derivative::pose, jet_at_t);
+  return jet_at_t.state.T_world_body;
+}
+
+void SweepwiseTrajectory::fill(const Sweep& sweep, Time t, Derivative upto, StateJet& jet) const {
   jet.first = 6 * poses_a_sweep() * static_cast<int>(&sweep - sweeps_.data());
   jet.state = {};
   jet.J.setZero(state_row::count, 6 * poses_a_sweep());
@@ -191,7 +200,8 @@ Vector6 SweepwiseTrajectory::last_twist() const {
   }
   if (known.size() < 2) return Vector6::Zero();
   const Sweep& earlier = *known[known.size() - 2];
-  return se3::log(earlier.last.inverse() * last.last) / to_s(last.end - earlier.end);
+  const double span_s = to_s(last.end - earlier.end);
+  return span_s > 0 ? Vector6(se3::log(earlier.last.inverse() * last.last) / span_s) : Vector6(Vector6::Zero());
 }
 
 void SweepwiseTrajectory::extend(Time begin, Time end, std::span<const Time>) {
@@ -232,7 +242,8 @@ Segment SweepwiseTrajectory::segment(Time t0, Time t1) const {
   if (model_ == SweepwiseModel::rigid) return Segment::hold(t0, t1, sweep.last);
   const SegmentModel model =
       model_ == SweepwiseModel::two_pose_slerp ? SegmentModel::two_pose_slerp : SegmentModel::two_pose_screw;
-  return Segment::two_pose(model, t0, at(t0).T_world_body, t1, at(t1).T_world_body);
+  // At t1 the next sweep may begin: asked is this one's end.
+  return Segment::two_pose(model, t0, pose_in(sweep, t0), t1, pose_in(sweep, t1));
 }
 
 std::unique_ptr<ParametricTrajectory> SweepwiseTrajectory::clone() const {

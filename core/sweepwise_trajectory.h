@@ -63,6 +63,8 @@ class SweepwiseTrajectory final : public ParametricTrajectory {
   static void fill_constant_velocity(const Sweep& sweep, Time t, Derivative upto, StateJet& jet);
   static void fill_screw(const Sweep& sweep, Time t, Derivative upto, StateJet& jet);
   static void fill_slerp(const Sweep& sweep, Time t, StateJet& jet);
+  void fill(const Sweep& sweep, Time t, Derivative upto, StateJet& jet) const;
+  SE3 pose_in(const Sweep& sweep, Time t) const;
   const Sweep* find(Time t) const;
   const Sweep& found(Time t) const;
   SE3& block(int i);

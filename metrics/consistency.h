@@ -3,9 +3,9 @@
 /// With T the true pose carried into the method's map by the first scored pose, and T^ the estimate, the error is
 /// xi = Log(T^-1 T) in the body's frame, translation first, and NEES = xi^T P^-1 xi with the covariance P that the
 /// method states. If P tells the truth, NEES is chi-squared with 6 degrees of freedom: its mean over sweeps (ANEES) is
-/// 6, and 95 % of the sweeps lie below 12.59. A method that builds its own map knows nothing of that map's drift: all
-/// of them are over-confident in scenes, and no bound is set. Source: Bar-Shalom, Li, Kirubarajan, Estimation with
-/// Applications to Tracking and Navigation, 2001, 5.4.
+/// 6, and 95 % of the sweeps lie below 12.59. A method that builds its own map knows nothing of that map's drift,
+/// and no bound is set. Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation,
+/// 2001, 5.4.
 #pragma once
 
 #include <vector>

@@ -200,8 +200,8 @@ constexpr MetricEntry kMetrics[] = {
     {"anees_per_dof", "1", true, kFirst,
      "Squared pose error in terms of the covariance that the method states, per degree of freedom; mean over sweeps. "
      "1: "
-     "the covariance tells the truth; above: over-confident, as every method with a map of its own is. No bound is "
-     "set.",
+     "the covariance tells the truth; above: over-confident. No bound is set: no covariance knows how the method's own "
+     "map has drifted.",
      kBarShalom, "consistency"},
     {"anees_root_per_dof", "1", true, kFirst,
      "Root of the same: by what factor the stated standard deviations are too small.", kBarShalom, "consistency"},

@@ -56,6 +56,19 @@ void check_effect(const BatchSplineOptions& options) {
   if (options.map.radius_m != defaults.map.radius_m) refuse("map.radius_m");
   if (options.map.delay_sweeps != defaults.map.delay_sweeps) refuse("map.delay_sweeps");
   if (options.lidar.startup_voxel_reach != defaults.lidar.startup_voxel_reach) refuse("lidar.startup_voxel_reach");
+  if (options.lidar.sum_stamp_residuals) refuse("lidar.sum_stamp_residuals");
+  if (options.imu.accel_as_increments) refuse("imu.accel_as_increments");
+}
+
+/// The motion in a map whose z axis is up: turned, about the origin and by the smallest angle, so that gravity points
+/// down. A spline whose control points are moved from the left is moved as a whole.
+core::SplineTrajectory levelled(const WindowState& state) {
+  const auto& spline = dynamic_cast<const core::SplineTrajectory&>(*state.trajectory);
+  SE3 T_level_map = SE3::Identity();
+  T_level_map.linear() = Eigen::Quaterniond::FromTwoVectors(state.gravity_map, -Vector3d::UnitZ()).toRotationMatrix();
+  std::vector<SE3> control_points;
+  for (const SE3& T : spline.control_points()) control_points.push_back(core::se3::normalized(T_level_map * T));
+  return {spline.kind(), spline.order(), std::move(control_points), spline.knots()};
 }
 
 }  // namespace
@@ -75,12 +88,7 @@ BatchSpline::BatchSpline(const BatchSplineOptions& options, const EstimatorConte
   if (!with_imu_ && options.imu.free_time_offset)
     throw core::InputError("imu.free_time_offset is about an IMU, but imu.use is none or the rig has no usable one");
   check_effect(options);
-  if (options.lidar.min_neighbours > options.lidar.max_neighbours)
-    throw core::InputError(fmt::format("lidar.min_neighbours: {} must not be above lidar.max_neighbours ({})",
-                                       options.lidar.min_neighbours, options.lidar.max_neighbours));
-  if ((options.lidar.residual == "point-to-distribution") != (options.map.kind == "distributions"))
-    throw core::InputError(
-        fmt::format("lidar.residual: {} does not go with map.kind {}", options.lidar.residual, options.map.kind));
+  check_lidar(options.lidar, options.map);
 }
 
 void BatchSpline::add(const core::ImuSample& sample) {
@@ -195,11 +203,10 @@ double BatchSpline::solve_round() {
 
 void BatchSpline::finish(core::Estimate& estimate) {
   estimate.has_causal = false;
-  estimate.gravity_aligned = with_imu_;
+  estimate.gravity_aligned = with_imu_;  // levelled()
   if (kept_.empty()) {
     estimate.status = core::RunStatus::not_initialised;
-    estimate.message = odometry_.inertial().why_not();
-    if (estimate.message.empty()) estimate.message = "no sweep had a point to start from";
+    estimate.message = odometry_.why_not();
     return;
   }
   arena_.execute([&] {
@@ -209,7 +216,7 @@ void BatchSpline::finish(core::Estimate& estimate) {
   });
   estimate.has_final = true;
   estimate.message = arena_.execute([&] { return offset_message(*window_); });
-  const core::ParametricTrajectory& trajectory = window_->trajectory();
+  const core::SplineTrajectory trajectory = levelled(window_->state());
   for (const Kept& sweep : kept_) estimate.final.append(trajectory.segment(sweep.begin, sweep.end));
   for (core::SweepResult& result : estimate.sweeps)
     if (trajectory.covers(result.reference) && result.status != core::SweepStatus::initialising)

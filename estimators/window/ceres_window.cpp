@@ -295,6 +295,7 @@ ceres::Solver::Options solver_options(const SolveSettings& settings, CeresDampin
 
 SolveReport solve_with_ceres(Window& window, const SolveSettings& settings, CeresDamping damping) {
   check(window.model(), window.trajectory());
+  if (window.model().sum_stamp_residuals) throw std::invalid_argument("Ceres has no step of summed residuals");
   WindowProblem problem = window.problem();
   if (!settings.lidar)
     problem.keep([](const auto&) { return true; }, [](const WindowProblem::Stamp&) { return false; });

@@ -94,7 +94,7 @@ MatrixXd Window::covariance(const BandedSystem& equations, core::Time t, core::D
   const MatrixXd parameters = equations.covariance(jet.first, jet.columns());
   if (parameters.size() == 0) return {};
   const MatrixXd J = jet.J.topRows(core::state_row::filled(upto));
-  return J * parameters * J.transpose();
+  return J * parameters * J.transpose() + trajectory().conditional_covariance(t, upto);
 }
 
 MatrixXd Window::border_covariance() const {

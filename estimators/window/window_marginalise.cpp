@@ -21,7 +21,7 @@ struct Cut {
   MarginalPrior::Border touched;  ///< that stays, columns as they are before the cut
 };
 
-bool goes(const Cut& cut, const WindowProblem::Item& item) {
+bool goes(const Cut& cut, const std::vector<BiasAnchor>& bias_anchors, const WindowProblem::Item& item) {
   switch (item.kind) {
     case Kind::reading:
     case Kind::increment:
@@ -31,8 +31,9 @@ bool goes(const Cut& cut, const WindowProblem::Item& item) {
     case Kind::model_prior:
       return item.index < cut.blocks;
     case Kind::bias_walk:
-    case Kind::bias_anchor:
       return item.index < cut.bias_knots;
+    case Kind::bias_anchor:
+      return bias_anchors[static_cast<std::size_t>(item.index)].knot < cut.bias_knots;
     case Kind::gravity_prior:
     case Kind::offset_prior:
       return false;  // what they speak of stays
@@ -104,7 +105,7 @@ void Window::marginalise_before(core::Time t, Marginalisation rule, double eigen
   cut.bias_knots = bias_knots_before(state_.biases, cut.begin, state_.imu_offset_s);
 
   WindowProblem leaving = problem();
-  leaving.keep([&](const auto& item) { return goes(cut, item); },
+  leaving.keep([&](const auto& item) { return goes(cut, data_.bias_anchors, item); },
                [&](const WindowProblem::Stamp& stamp) { return stamp.t < cut.begin; });
   const int size = trajectory().block_size();
   const int reached = std::min(trajectory().blocks(), cut.blocks + trajectory().reach());

@@ -66,22 +66,25 @@ bool gauss_newton(Descent& descent, const SolveSettings& settings, int& iteratio
   return true;
 }
 
+/// False: singular whatever the damping, or not finite.
 bool levenberg_marquardt(Descent& descent, const SolveSettings& settings, int& iterations) {
   VectorXd x;
   double lambda = settings.initial_lambda;
+  bool solved_once = settings.max_iterations == 0;
   while (iterations < settings.max_iterations) {
     ++iterations;
     const double before = descent.cost();
     const bool solved = descent.step(lambda, x);
+    solved_once |= solved;
     if (solved && descent.move(x, true)) {
       lambda = std::max(kLeastLambda, lambda / 10);
       if (descent.settled(before)) break;
       continue;
     }
     lambda *= 10;
-    if (lambda > kMostLambda) return solved;
+    if (lambda > kMostLambda) break;
   }
-  return true;
+  return solved_once;
 }
 
 }  // namespace

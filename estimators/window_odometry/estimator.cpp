@@ -40,14 +40,15 @@ SweepOutcome WindowOdometryEstimator::add(const core::LidarSweep& sweep) {
 }
 
 void WindowOdometryEstimator::finish(core::Estimate& estimate) {
-  estimate.gravity_aligned = odometry_.settings().imu.gyro();
+  // Where gravity's direction is an unknown, the map keeps the tilt that the start gave it.
+  const ImuSettings& imu = odometry_.settings().imu;
+  estimate.gravity_aligned = imu.gyro() && !imu.free_gravity;
   if (started_) {
     estimate.message = arena_.execute([&] { return offset_message(odometry_.window()); });
     return;
   }
   estimate.status = core::RunStatus::not_initialised;
-  estimate.message = odometry_.inertial().why_not();
-  if (estimate.message.empty()) estimate.message = "no sweep had a point to start from";
+  estimate.message = odometry_.why_not();
 }
 
 }  // namespace tarmac::estimators

@@ -33,6 +33,10 @@ std::string offset_message(const Window& window) {
   const Eigen::MatrixXd covariance = window.border_covariance();
   const double sigma_s =
       covariance.rows() > column ? std::sqrt(covariance(column, column)) : std::numeric_limits<double>::infinity();
+  const double prior_s = window.model().imu_offset_sigma_s;
+  if (prior_s > 0 && sigma_s > prior_s / 2)
+    return fmt::format("IMU time offset unobservable: standard deviation {:.4f} ms after {:.4f} ms before any data",
+                       1e3 * sigma_s, 1e3 * prior_s);
   return fmt::format("IMU time offset {:.4f} ms, standard deviation {:.4f} ms", 1e3 * window.state().imu_offset_s,
                      1e3 * sigma_s);
 }

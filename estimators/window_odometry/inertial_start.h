@@ -16,8 +16,9 @@ namespace tarmac::estimators {
 /// The IMU's part of a window's model; the accelerometer's deviation only where `use` says so.
 void set_imu(const ImuSettings& settings, const core::Rig& rig, WindowModel& model);
 
-/// What the window found of the IMU's time offset, with its standard deviation, beside the data sheet's delay; empty
-/// where that is no unknown.
+/// What the window found of the IMU's time offset, with its standard deviation, beside the data sheet's delay;
+/// "unobservable" where the data did not halve the prior's deviation, as at a constant rate of turn; empty where it is
+/// no unknown.
 std::string offset_message(const Window& window);
 
 /// Attitude and biases from a rest, and a queue of readings for the window. Without an IMU it has started from the

@@ -34,10 +34,13 @@ core::GpModel gp_named(const std::string& name) {
 
 }  // namespace
 
-std::unique_ptr<core::ParametricTrajectory> MotionModel::at_rest(Time begin, const SE3& T_map_body) const {
+std::unique_ptr<core::ParametricTrajectory> MotionModel::at_rest(Time begin, const SE3& T_map_body,
+                                                                 Duration period) const {
   if (settings_.is_spline()) {
     const auto kind = settings_.model == "spline" ? core::SplineKind::split : core::SplineKind::se3;
-    const Duration spacing = core::duration_from_s(settings_.knots == "uniform" ? settings_.knot_spacing_s : kSlot_s);
+    Duration spacing = period;
+    if (settings_.knots == "uniform") spacing = core::duration_from_s(settings_.knot_spacing_s);
+    if (settings_.knots == "imu-excitation") spacing = core::ExcitationRule().slot;
     return std::make_unique<core::SplineTrajectory>(core::SplineTrajectory::at_rest(
         kind, settings_.order, T_map_body, core::uniform_knots(begin, begin, spacing, settings_.order)));
   }
@@ -52,7 +55,7 @@ std::unique_ptr<core::ParametricTrajectory> MotionModel::at_rest(Time begin, con
   return std::make_unique<core::SweepwiseTrajectory>(sweepwise_named(settings_.model), T_map_body);
 }
 
-std::vector<Time> MotionModel::knots_over(const core::ParametricTrajectory& trajectory, Time end,
+std::vector<Time> MotionModel::knots_over(const core::ParametricTrajectory& trajectory, Time end, Duration period,
                                           std::span<const core::ImuSample> imu) const {
   if (settings_.is_sweepwise()) return {};
   const auto* spline = dynamic_cast<const core::SplineTrajectory*>(&trajectory);
@@ -67,7 +70,7 @@ std::vector<Time> MotionModel::knots_over(const core::ParametricTrajectory& traj
     rule.gravity_m_s2 = gravity_m_s2_;
     return core::excitation_knots_after(have, end, imu, rule, beyond);
   }
-  if (spline != nullptr) return core::sweep_knots_after(have, end, core::duration_from_s(kSlot_s), beyond);
+  if (spline != nullptr) return core::sweep_knots_after(have, end, period, beyond);
   std::vector<Time> knots;
   if (end <= last) return knots;
   // A sweep of one packet may be over before two knots are apart.
@@ -77,9 +80,10 @@ std::vector<Time> MotionModel::knots_over(const core::ParametricTrajectory& traj
   return knots;
 }
 
-void MotionModel::extend_over(Window& window, Time begin, Time end, std::span<const core::ImuSample> imu) const {
+void MotionModel::extend_over(Window& window, Time begin, Time end, Duration period,
+                              std::span<const core::ImuSample> imu) const {
   core::ParametricTrajectory& trajectory = window.trajectory();
-  trajectory.extend(begin, end, knots_over(trajectory, end, imu));
+  trajectory.extend(begin, end, knots_over(trajectory, end, period, imu));
 }
 
 void MotionModel::set_prior(WindowModel& model) const {

@@ -18,10 +18,13 @@ class MotionModel {
   MotionModel(const MotionSettings& settings, double gravity_m_s2) : settings_(settings), gravity_m_s2_(gravity_m_s2) {}
 
   /// At rest at T from `begin` on; covers `begin` at least after the first extend_over().
-  std::unique_ptr<core::ParametricTrajectory> at_rest(core::Time begin, const core::SE3& T_map_body) const;
+  /// `period`: between sweeps, as far as known.
+  std::unique_ptr<core::ParametricTrajectory> at_rest(core::Time begin, const core::SE3& T_map_body,
+                                                      core::Duration period) const;
   /// Grows the window's trajectory over a sweep, by the policy of knots. `imu`: what was measured since the last
   /// sweep's end.
-  void extend_over(Window& window, core::Time begin, core::Time end, std::span<const core::ImuSample> imu) const;
+  void extend_over(Window& window, core::Time begin, core::Time end, core::Duration period,
+                   std::span<const core::ImuSample> imu) const;
   /// The prior of models that have none of their own: smoothness of splines.
   void set_prior(WindowModel& model) const;
   /// What ties a new sweep of a sweepwise model to the motion before it, what extend() made of it being the mean.
@@ -30,8 +33,7 @@ class MotionModel {
 
  private:
   std::vector<core::Time> knots_over(const core::ParametricTrajectory& trajectory, core::Time end,
-                                     std::span<const core::ImuSample> imu) const;
-  static constexpr double kSlot_s = 0.1;  ///< between knots before there is anything to place them by
+                                     core::Duration period, std::span<const core::ImuSample> imu) const;
 
   MotionSettings settings_;
   double gravity_m_s2_;

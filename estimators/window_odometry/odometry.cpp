@@ -1,5 +1,7 @@
 #include "estimators/window_odometry/odometry.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 
@@ -55,6 +57,7 @@ WindowOdometry::Step WindowOdometry::add(const core::LidarSweep& sweep) {
   sampler_.choose_keypoints(startup() ? settings_.sampling.startup_keypoint_cell_m
                                       : settings_.sampling.keypoint_cell_m);
   keypoints_ = timed_points(sweep, sampler_.keypoints(), T_body_lidar_);
+  most_keypoints_ = std::max(most_keypoints_, keypoints_.size());
   matches_.clear();
   stopwatch.lap("sampling");
   if (!window_ && !can_start(sweep)) {
@@ -73,8 +76,9 @@ WindowOdometry::Step WindowOdometry::add(const core::LidarSweep& sweep) {
   step.T_map_body_end = window_->trajectory().pose(sweep.end);
   step.clipped_stamps = keypoints_.clipped;
   if (!step.lost) past_.back().sample = timed_points(sweep, sampler_.sample(), T_body_lidar_);
-  // A lost sweep's place is a guess: nothing is dropped from the map about it, nothing enters.
-  if (!step.lost) update_map();
+  // A lost sweep's place is a guess: nothing is dropped from the map about it, and it does not enter.
+  if (!step.lost) map_.remove_far(step.T_map_body_end.translation());
+  update_map();
   stopwatch.lap("map");
   ++sweeps_;
   return step;
@@ -87,9 +91,18 @@ bool WindowOdometry::can_start(const core::LidarSweep& sweep) const {
          keypoints_.size() >= static_cast<std::size_t>(settings_.solver.min_residuals);
 }
 
+std::string WindowOdometry::why_not() const {
+  if (const std::string why = inertial_.why_not(); !why.empty()) return why;
+  return fmt::format(
+      "no sweep had what a start needs: {} keypoints (solver.min_residuals; the most were {}) and a "
+      "duration of a millisecond",
+      settings_.solver.min_residuals, most_keypoints_);
+}
+
 void WindowOdometry::start(const core::LidarSweep& sweep) {
   WindowState state;
-  state.trajectory = model_.at_rest(sweep.begin, inertial_.T_map_body());
+  period_ = sweep.end - sweep.begin;
+  state.trajectory = model_.at_rest(sweep.begin, inertial_.T_map_body(), period_);
   if (settings_.imu.gyro()) state.biases.push_back({sweep.begin, inertial_.biases()});
   WindowModel model = model_of(settings_, rig_);
   model_.set_prior(model);
@@ -115,7 +128,10 @@ void WindowOdometry::anchor_start(Time begin) {
 }
 
 void WindowOdometry::grow(const core::LidarSweep& sweep) {
-  model_.extend_over(*window_, sweep.begin, sweep.end, since_last_);
+  // From end to end where no sweep is missing between.
+  if (const core::Duration step = sweep.end - last_end_; sweeps_ > 0 && 2 * step > period_ && 2 * step < 3 * period_)
+    period_ = step;
+  model_.extend_over(*window_, sweep.begin, sweep.end, period_, since_last_);
   since_last_.clear();
   past_.push_back({sweep.index, sweep.begin, sweep.end, {}});
   if (past_.size() > static_cast<std::size_t>(settings_.window.sweeps)) {
@@ -212,15 +228,15 @@ core::Matrix6 WindowOdometry::prior_information(const core::LidarSweep& sweep) c
 }
 
 void WindowOdometry::update_map() {
-  const auto delay = static_cast<std::size_t>(settings_.map.delay_sweeps);
-  map_.remove_far(window_->trajectory().pose(past_.back().end).translation());
   // The first sweep starts the map at once.
-  if (sweeps_ > 0 && past_.size() <= delay) return;
-  PastSweep& sweep = sweeps_ == 0 ? past_.back() : past_[past_.size() - 1 - delay];
-  if (sweep.sample.size() == 0) return;
-  place(sweep.sample, window_->trajectory(), T_map_body_, p_map_);
-  map_.add(p_map_);
-  sweep.sample = {};
+  const std::size_t delay = sweeps_ == 0 ? 0 : static_cast<std::size_t>(settings_.map.delay_sweeps);
+  for (std::size_t i = 0; i + delay < past_.size(); ++i) {
+    TimedPoints& sample = past_[i].sample;
+    if (sample.size() == 0) continue;
+    place(sample, window_->trajectory(), T_map_body_, p_map_);
+    map_.add(p_map_);
+    sample = {};
+  }
 }
 
 }  // namespace tarmac::estimators

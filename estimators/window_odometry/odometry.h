@@ -42,9 +42,10 @@ class WindowOdometry {
   Step add(const core::LidarSweep& sweep);
 
   const WindowOdometrySettings& settings() const { return settings_; }
-  bool has_window() const { return window_.has_value(); }
   const Window& window() const { return *window_; }
   const InertialStart& inertial() const { return inertial_; }
+  /// Why it has not started, for the run's message.
+  std::string why_not() const;
   /// Of the last sweep: keypoints and what they were matched to (last association).
   const TimedPoints& keypoints() const { return keypoints_; }
   const std::vector<SurfaceMatch>& matches() const { return matches_; }
@@ -83,7 +84,9 @@ class WindowOdometry {
   SurfaceMap map_;
   std::optional<Window> window_;
   int sweeps_ = 0;
-  core::Time last_end_;         ///< of the sweep before
+  core::Time last_end_;       ///< of the sweep before
+  core::Duration period_{0};  ///< between sweeps
+  std::size_t most_keypoints_ = 0;
   std::deque<PastSweep> past_;  ///< of the window, the last one being the present
   std::vector<core::ImuSample> since_last_;
   TimedPoints keypoints_;

@@ -45,26 +45,26 @@ void check_imu(const WindowOdometrySettings& s) {
   if (s.imu.accel() && m.is_sweepwise()) refuse(fmt::format("imu.use: {} has no acceleration: use gyro", m.model));
 }
 
-void check_lidar(const WindowOdometrySettings& s) {
-  if (s.lidar.min_neighbours > s.lidar.max_neighbours)
-    refuse(fmt::format("lidar.min_neighbours: {} must not be above lidar.max_neighbours ({}): no plane would be found",
-                       s.lidar.min_neighbours, s.lidar.max_neighbours));
-  if ((s.lidar.residual == "point-to-distribution") != (s.map.kind == "distributions"))
-    refuse(fmt::format("lidar.residual: {} does not go with map.kind {}", s.lidar.residual, s.map.kind));
-  if (!s.lidar.sum_stamp_residuals) return;
-  if (s.lidar.residual != "point-to-plane")
-    refuse(fmt::format("lidar.sum_stamp_residuals: of point-to-plane only; lidar.residual is {}", s.lidar.residual));
-  if (s.lidar.loss != "standard")
-    refuse(fmt::format("lidar.sum_stamp_residuals: a sum has no robust loss; use lidar.loss standard, not {}",
-                       s.lidar.loss));
-}
-
 }  // namespace
+
+void check_lidar(const LidarSettings& lidar, const MapSettings& map) {
+  if (lidar.min_neighbours > lidar.max_neighbours)
+    refuse(fmt::format("lidar.min_neighbours: {} must not be above lidar.max_neighbours ({}): no plane would be found",
+                       lidar.min_neighbours, lidar.max_neighbours));
+  if ((lidar.residual == "point-to-distribution") != (map.kind == "distributions"))
+    refuse(fmt::format("lidar.residual: {} does not go with map.kind {}", lidar.residual, map.kind));
+  if (!lidar.sum_stamp_residuals) return;
+  if (lidar.residual != "point-to-plane")
+    refuse(fmt::format("lidar.sum_stamp_residuals: of point-to-plane only; lidar.residual is {}", lidar.residual));
+  if (lidar.loss != "standard")
+    refuse(fmt::format("lidar.sum_stamp_residuals: a sum has no robust loss; use lidar.loss standard, not {}",
+                       lidar.loss));
+}
 
 const WindowOdometrySettings& WindowOdometrySettings::checked() const {
   check_motion(*this);
   check_imu(*this);
-  check_lidar(*this);
+  check_lidar(lidar, map);
   if (sampling.min_range_m >= sampling.max_range_m)
     refuse(fmt::format("sampling.min_range_m: {} must be below sampling.max_range_m ({}): no point would be left",
                        sampling.min_range_m, sampling.max_range_m));

@@ -219,8 +219,12 @@ struct WindowOdometrySettings {
       "how far from rest the start may be (rotation: a fifth of it in rad/s)", {.above = 0});
   }
 
-  /// Themselves. Throws InputError where they contradict each other or one of them can have no effect, naming it.
+  /// Themselves. Throws InputError where they contradict each other, naming what. A number that the chosen model, map
+  /// or loss does not look at (order without a spline, loss_scale of loss standard) is no contradiction.
   const WindowOdometrySettings& checked() const;
 };
+
+/// Throws InputError where the two contradict each other.
+void check_lidar(const LidarSettings& lidar, const MapSettings& map);
 
 }  // namespace tarmac::estimators

@@ -62,6 +62,31 @@ TEST_P(EveryProcessOnSE3, CovarianceBetweenKnotsIsThatOfDraws) {
   }
 }
 
+/// With both knots known: the same as from a joint covariance of zero, rows as a state's; nothing at a knot.
+TEST_P(EveryProcessOnSE3, ConditionalCovarianceIsWhatIsLeftWithBothKnotsKnown) {
+  const Curve curve(prior());
+  GpTrajectory mean(curve.prior, {curve.first});
+  mean.extend(curve.first.t, curve.first.t + duration_from_s(curve.T), {});
+  const int size = curve.prior.size();
+  for (const double share : {0.01, 0.3, 0.5, 0.9}) {
+    const Time t = curve.first.t + duration_from_s(share * curve.T);
+    const Eigen::MatrixXd P = mean.covariance(t, Eigen::MatrixXd::Zero(2 * size, 2 * size)).P;
+    const Eigen::MatrixXd found = mean.conditional_covariance(t, Derivative::acceleration);
+    ASSERT_EQ(found.rows(), state_row::count);
+    EXPECT_LT((found.topLeftCorner<6, 6>() - P.topLeftCorner<6, 6>()).norm(), 1e-9 * P.topLeftCorner<6, 6>().norm());
+    // v = R nu: R (d(nu) - hat(nu) phi) by pose and velocity.
+    const GpKnot knot = gp_knot(t, mean.at(t));
+    Eigen::Matrix<double, 3, 12> by_state = Eigen::Matrix<double, 3, 12>::Zero();
+    by_state.middleCols<3>(3) = -knot.T_world_body.linear() * so3::hat(knot.varpi.head<3>());
+    by_state.middleCols<3>(6) = knot.T_world_body.linear();
+    const Eigen::Matrix3d velocity = by_state * P.topLeftCorner<12, 12>() * by_state.transpose();
+    EXPECT_LT((found.block<3, 3>(6, 6) - velocity).norm(), 1e-9 * velocity.norm());
+    EXPECT_EQ(mean.conditional_covariance(t, Derivative::pose).rows(), 6);
+  }
+  EXPECT_EQ(mean.conditional_covariance(mean.begin(), Derivative::velocity).norm(), 0);
+  EXPECT_EQ(mean.conditional_covariance(mean.end(), Derivative::velocity).norm(), 0);
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 // The block test: truth drawn from the very prior that the estimate is made with, walls known exactly, noise as said. A
 // deliberate inverse crime: it asks whether solver and covariances are consistent, not whether the prior fits any

@@ -86,6 +86,30 @@ TEST(SweepwiseSpan, ASharedInstantBelongsToTheLaterSweep) {
   EXPECT_EQ(jet.first, 6);
 }
 
+/// A sweep's segment ends where that sweep says, not where the next one begins.
+TEST(SweepwiseSpan, ASegmentOfASweepEndsWithItsOwnPose) {
+  SweepwiseTrajectory trajectory(SweepwiseModel::two_pose_screw, SE3::Identity());
+  trajectory.extend(time_from_ns(0), time_from_ns(100), {});
+  trajectory.extend(time_from_ns(100), time_from_ns(200), {});
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(trajectory.parameters());
+  step[12] = 0.5;  // the second sweep begins half a metre further on
+  trajectory.retract(step);
+  const Segment segment = trajectory.segment(time_from_ns(0), time_from_ns(100));
+  EXPECT_LT(segment.pose(time_from_ns(100)).translation().norm(), 1e-12);
+  EXPECT_NEAR(trajectory.pose(time_from_ns(100)).translation().x(), 0.5, 1e-12) << "the instant belongs to the later";
+}
+
+TEST(SweepwisePrediction, ASweepOfNoDurationAddsNoMotion) {
+  for (const SweepwiseModel model : {SweepwiseModel::rigid, SweepwiseModel::constant_velocity,
+                                     SweepwiseModel::two_pose_slerp, SweepwiseModel::two_pose_screw}) {
+    SweepwiseTrajectory trajectory(model, SE3::Identity());
+    trajectory.extend(time_from_ns(0), time_from_ns(100), {});
+    trajectory.extend(time_from_ns(100), time_from_ns(100), {});
+    trajectory.extend(time_from_ns(100), time_from_ns(200), {});
+    EXPECT_TRUE(se3::all_finite(trajectory.pose(time_from_ns(150)))) << static_cast<int>(model);
+  }
+}
+
 TEST(SweepwisePrediction, RepeatsTheLastMotion) {
   Vector6 twist;
   twist << 3, 0.2, 0, 0, 0.1, 0.7;

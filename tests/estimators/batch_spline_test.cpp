@@ -55,6 +55,12 @@ TEST(BatchSpline, PlacesTheWholeDriveToCentimetres) {
   EXPECT_FALSE(run.estimate.has_causal);
   EXPECT_TRUE(run.estimate.has_final);
   EXPECT_TRUE(run.estimate.gravity_aligned);
+  // Upright as the truth is at the end, gravity's direction having been an unknown.
+  const core::Time end = run.estimate.final.end() - core::Duration(1'000'000);
+  const Eigen::Vector3d up = run.estimate.final.pose(end).linear().transpose() * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d up_true =
+      tests::room_motion(core::to_s(end), 1.5).linear().transpose() * Eigen::Vector3d::UnitZ();
+  EXPECT_LT((up - up_true).norm(), 2e-3);
   EXPECT_GE(run.method->rounds(), 1);
   EXPECT_LT(run.worst_m, 0.03);
 }

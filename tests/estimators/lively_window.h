@@ -1,6 +1,7 @@
 /// Windows over the project's own trajectories, moving about in all directions.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,10 +13,10 @@
 
 namespace tarmac::estimators {
 
-enum class Lively { spline_split, spline_se3, gp_wnoa, gp_wnoj };
+enum class Lively { spline_split, spline_se3, spline_split_6, gp_wnoa, gp_wnoj, gp_singer };
 
 inline void PrintTo(Lively model, std::ostream* out) {
-  const char* names[] = {"spline_split", "spline_se3", "gp_wnoa", "gp_wnoj"};
+  const char* names[] = {"spline_split", "spline_se3", "spline_split_6", "gp_wnoa", "gp_wnoj", "gp_singer"};
   *out << names[static_cast<int>(model)];
 }
 
@@ -30,8 +31,12 @@ inline std::unique_ptr<core::ParametricTrajectory> lively(Lively model, int knot
     return Eigen::Vector3d(stream.normal(k, 3 * j), stream.normal(k, 3 * j + 1), stream.normal(k, 3 * j + 2));
   };
   const core::Duration spacing = std::chrono::milliseconds(100);
-  const bool process = model == Lively::gp_wnoa || model == Lively::gp_wnoj;
-  const int order = model == Lively::spline_split ? 4 : 5, control_points = process ? knots + order : knots;
+  const bool process = model >= Lively::gp_wnoa;
+  const bool split = model == Lively::spline_split || model == Lively::spline_split_6;
+  const int order = model == Lively::spline_split_6 ? 6
+                    : split                         ? 4
+                                                    : 5,
+            control_points = process ? knots + order : knots;
   const core::Vector6 mean = (core::Vector6() << 0.1, 0, 0, 0, 0, 0.05).finished();
   core::SE3 T = core::SE3::Identity();
   T.translation() = Eigen::Vector3d(3, -2, 1);
@@ -45,8 +50,8 @@ inline std::unique_ptr<core::ParametricTrajectory> lively(Lively model, int knot
     step.tail<3>() += 0.06 * vector(i, 1);
     T = core::se3::normalized(T * core::se3::exp(step));
   }
-  auto spline = std::make_unique<core::SplineTrajectory>(
-      model == Lively::spline_split ? core::SplineKind::split : core::SplineKind::se3, order, poses, times);
+  auto spline = std::make_unique<core::SplineTrajectory>(split ? core::SplineKind::split : core::SplineKind::se3, order,
+                                                         poses, times);
   if (!process) return spline;
   std::vector<core::GpKnot> gp_knots;
   for (int i = 0; i < knots; ++i) {
@@ -54,8 +59,10 @@ inline std::unique_ptr<core::ParametricTrajectory> lively(Lively model, int knot
     gp_knots.push_back(core::gp_knot(t, spline->at(t)));
   }
   core::GpPrior prior;
-  prior.model = model == Lively::gp_wnoa ? core::GpModel::wnoa : core::GpModel::wnoj;
-  prior.qc = model == Lively::gp_wnoa ? core::Vector6::Constant(5) : core::Vector6::Constant(1000);
+  const auto which = static_cast<std::size_t>(model) - static_cast<std::size_t>(Lively::gp_wnoa);
+  prior.model = std::array{core::GpModel::wnoa, core::GpModel::wnoj, core::GpModel::singer}[which];
+  prior.qc.setConstant(std::array{5.0, 1000.0, 1e5}[which]);
+  if (model == Lively::gp_singer) prior.rate.setConstant(10);
   return std::make_unique<core::GpTrajectory>(prior, gp_knots);
 }
 

@@ -1,6 +1,7 @@
 // Windows over splines and Gaussian processes: what they recover, and that Ceres finds the same.
 #include <gtest/gtest.h>
 
+#include "core/sweepwise_trajectory.h"
 #include "estimators/window/ceres_window.h"
 #include "estimators/window/state_jacobian.h"
 #include "estimators/window/velocity_increment.h"
@@ -245,7 +246,8 @@ TEST_P(WithCeres, SlidingStaysWithinASmallPartOfASigmaOfTheBatch) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, WithCeres,
-                         testing::Values(Lively::spline_split, Lively::spline_se3, Lively::gp_wnoa, Lively::gp_wnoj));
+                         testing::Values(Lively::spline_split, Lively::spline_se3, Lively::spline_split_6,
+                                         Lively::gp_wnoa, Lively::gp_wnoj, Lively::gp_singer));
 
 struct Spaced {
   core::GpModel model;
@@ -271,11 +273,17 @@ Window solved_window(const Spaced& spaced) {
   std::vector<core::GpKnot> knots;
   for (Time t = kLivelyBegin; t <= motion->end(); t += spacing) knots.push_back(core::gp_knot(t, motion->at(t)));
   WindowModel model = imu_model();
-  model.free_imu_offset = model.free_gravity = false;
-  if (spaced.model == core::GpModel::wnoa) model.accel_sigma_m_s2 = 0;
+  model.gyro_walk_rad_s2_rthz = 1e-3;
+  model.accel_walk_m_s3_rthz = 1e-2;
+  model.gravity_sigma_rad = 0.1;
+  model.imu_offset_sigma_s = 0.01;
+  if (spaced.model == core::GpModel::wnoa) {  // its acceleration jumps at knots
+    model.accel_sigma_m_s2 = 0;
+    model.free_gravity = false;
+  }
   WindowState state;
   state.trajectory = std::make_unique<core::GpTrajectory>(prior, knots);
-  state.biases = {{kLivelyBegin, kBias}};
+  for (const int ms : {0, 300, 600}) state.biases.push_back({kLivelyBegin + std::chrono::milliseconds(ms), kBias});
   state.gravity_map = Vector3d(0.05, -0.08, -1).normalized();
   state.imu_offset_s = kOffset_s;
   Window window(model, std::move(state));
@@ -296,6 +304,7 @@ TEST_P(AtTheMinimum, WhatIsMarginalisedChangesNeitherMeanNorCovariance) {
   const Time t = kLivelyBegin + (window.trajectory().end() - kLivelyBegin) * 3 / 4;
   const core::Derivative upto = window.trajectory().has();
   const MatrixXd P = window.covariance(t, upto);
+  const MatrixXd B_batch = window.border_covariance();
   const core::Kinematics before = window.trajectory().at(t);
   for (int part = 1; part <= 5; ++part)
     window.marginalise_before(kLivelyBegin + (t - kLivelyBegin) * part / 6, Marginalisation::plain);
@@ -308,6 +317,12 @@ TEST_P(AtTheMinimum, WhatIsMarginalisedChangesNeitherMeanNorCovariance) {
   const MatrixXd scale = sigma.cwiseInverse().asDiagonal();
   EXPECT_LT((scale * (P - P_window) * scale).cwiseAbs().maxCoeff(), GetParam().covariance);
   EXPECT_LT(moved.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-7);
+  // The last bias, gravity and the offset.
+  EXPECT_LT(window.state().biases.size(), 3u);
+  const MatrixXd B_window = window.border_covariance();
+  const MatrixXd B = B_batch.bottomRightCorner(B_window.rows(), B_window.rows());
+  const MatrixXd border_scale = B.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
+  EXPECT_LT((border_scale * (B - B_window) * border_scale).cwiseAbs().maxCoeff(), GetParam().covariance);
 }
 
 INSTANTIATE_TEST_SUITE_P(Knots, AtTheMinimum,
@@ -319,15 +334,55 @@ INSTANTIATE_TEST_SUITE_P(Knots, AtTheMinimum,
                                          Spaced{core::GpModel::singer, 10, 3e-6}));
 
 TEST(Window, ModelsThatATrajectoryCannotServeAreRefused) {
+  const auto refused = [](core::SweepwiseModel kind, const WindowModel& model) {
+    auto sweepwise = std::make_unique<core::SweepwiseTrajectory>(kind, core::SE3::Identity());
+    sweepwise->extend(kLivelyBegin, kLivelyBegin + std::chrono::milliseconds(100), {});
+    WindowState state;
+    state.trajectory = std::move(sweepwise);
+    try {
+      Window(model, std::move(state));
+    } catch (const std::invalid_argument&) {
+      return true;
+    }
+    return false;
+  };
+  WindowModel gyro, accelerometer, smoothness;
+  gyro.gyro_sigma_rad_s = 0.01;
+  accelerometer.accel_sigma_m_s2 = 0.1;
+  smoothness.smoothness_translation = 1;
+  EXPECT_TRUE(refused(core::SweepwiseModel::rigid, gyro));
+  EXPECT_FALSE(refused(core::SweepwiseModel::two_pose_slerp, gyro));
+  EXPECT_TRUE(refused(core::SweepwiseModel::two_pose_slerp, accelerometer));
+  EXPECT_TRUE(refused(core::SweepwiseModel::two_pose_slerp, smoothness));
+  EXPECT_FALSE(refused(core::SweepwiseModel::rigid, WindowModel()));
+}
+
+TEST(Window, NonsenseIsRefused) {
   WindowState state;
   state.trajectory = lively(Lively::gp_wnoa, 4, 1);
   WindowModel model;
   model.smoothness_translation = 1;
   model.smoothness_samples = 7;
   Window window(model, std::move(state));
-  EXPECT_THROW(window.solve({}), std::invalid_argument);
+  EXPECT_THROW(window.solve({}), std::invalid_argument) << "no such quadrature";
   EXPECT_THROW(window.marginalise_before(window.trajectory().end() + Duration(1'000'000'000), Marginalisation::plain),
                std::invalid_argument);
+}
+
+/// Which knot an anchor is of does not depend on its place in the list.
+TEST(Window, BiasAnchorsLeaveWithTheirKnots) {
+  const auto covariance = [](bool swapped) {
+    Window window = noisy_window(Lively::spline_split, 14, false);
+    for (const int knot : swapped ? std::array{1, 0} : std::array{0, 1})
+      window.add_bias_anchor(knot, Vector6::Zero(), Vector6::Constant(knot == 0 ? 0.01 : 0.02));
+    EXPECT_TRUE(window.solve(kToTheEnd).ok);
+    const MatrixXd before = window.border_covariance().bottomRightCorner(8, 8);
+    window.marginalise_before(kLivelyBegin + std::chrono::milliseconds(600), Marginalisation::plain);
+    EXPECT_EQ(window.state().biases.size(), 1u);
+    EXPECT_LT((window.border_covariance() - before).norm(), 1e-8 * before.norm()) << "nothing lost, nothing twice";
+    return before;
+  };
+  EXPECT_LT((covariance(false) - covariance(true)).norm(), 1e-12);
 }
 
 /// Each plane seen from both sides: summed before squaring nothing is left of it, squared each it counts twice.

@@ -224,7 +224,8 @@ TEST_P(EveryTerm, LidarSumsAreThoseOfTheSingleResiduals) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, EveryTerm,
-                         testing::Values(Lively::spline_split, Lively::spline_se3, Lively::gp_wnoa, Lively::gp_wnoj));
+                         testing::Values(Lively::spline_split, Lively::spline_se3, Lively::spline_split_6,
+                                         Lively::gp_wnoa, Lively::gp_wnoj, Lively::gp_singer));
 
 TEST(Breaks, AreTheKnotsWithinTheSpan) {
   for (const Lively kind : {Lively::spline_split, Lively::spline_se3, Lively::gp_wnoa}) {
