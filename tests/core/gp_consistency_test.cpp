@@ -73,14 +73,16 @@ TEST_P(EveryProcessOnSE3, ConditionalCovarianceIsWhatIsLeftWithBothKnotsKnown) {
     const Eigen::MatrixXd P = mean.covariance(t, Eigen::MatrixXd::Zero(2 * size, 2 * size)).P;
     const Eigen::MatrixXd found = mean.conditional_covariance(t, Derivative::acceleration);
     ASSERT_EQ(found.rows(), state_row::count);
-    EXPECT_LT((found.topLeftCorner<6, 6>() - P.topLeftCorner<6, 6>()).norm(), 1e-9 * P.topLeftCorner<6, 6>().norm());
+    const Matrix6 pose = P.topLeftCorner<6, 6>(), found_pose = found.topLeftCorner<6, 6>();
+    EXPECT_LT((found_pose - pose).norm(), 1e-9 * pose.norm());
     // v = R nu: R (d(nu) - hat(nu) phi) by pose and velocity.
     const GpKnot knot = gp_knot(t, mean.at(t));
     Eigen::Matrix<double, 3, 12> by_state = Eigen::Matrix<double, 3, 12>::Zero();
     by_state.middleCols<3>(3) = -knot.T_world_body.linear() * so3::hat(knot.varpi.head<3>());
     by_state.middleCols<3>(6) = knot.T_world_body.linear();
     const Eigen::Matrix3d velocity = by_state * P.topLeftCorner<12, 12>() * by_state.transpose();
-    EXPECT_LT((found.block<3, 3>(6, 6) - velocity).norm(), 1e-9 * velocity.norm());
+    const Eigen::Matrix3d found_velocity = found.block<3, 3>(6, 6);
+    EXPECT_LT((found_velocity - velocity).norm(), 1e-9 * velocity.norm());
     EXPECT_EQ(mean.conditional_covariance(t, Derivative::pose).rows(), 6);
   }
   EXPECT_EQ(mean.conditional_covariance(mean.begin(), Derivative::velocity).norm(), 0);
