@@ -35,8 +35,6 @@ void add_rows(const std::vector<ResidualRow>& rows, ChunkData& data) {
   data.add<float>(values);
 }
 
-constexpr std::size_t kCovarianceColumn = 12;
-
 [[noreturn]] void wrong_shape(const std::string& where) {
   throw DamagedFile(fmt::format("{}: a sweep's diagnostics have a wrong shape", where));
 }
@@ -87,8 +85,7 @@ SweepDiagnostics from_chunk(const ChunkData& data, const std::string& where) {
   s.H_prior = Eigen::Map<const Matrix6>(H_prior.data());
   s.rows = rows_of(data, 4, where);
   s.surface = rows_of(data, 8, where);
-  if (data.column_count() <= kCovarianceColumn) return s;  // a run of an earlier version states none
-  const auto covariance = data.column<double>(kCovarianceColumn);
+  const auto covariance = data.column<double>(12);
   if (covariance.size() != 36) wrong_shape(where);
   s.covariance = Eigen::Map<const Matrix6>(covariance.data());
   return s;

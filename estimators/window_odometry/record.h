@@ -13,6 +13,7 @@ namespace tarmac::estimators {
 ///   H_data: all matches' information by the pose at the sweep's end, the motion moving as a rigid whole, x sigma_m^2
 ///   H_prior: what the window says of the pose at the sweep's end without this sweep's points, x sigma_m^2; zero where
 ///            it leaves a direction free
+///   covariance: the window's, of the pose at the sweep's end, with this sweep's points and all that the state depends on
 core::SweepDiagnostics record_of(const core::LidarSweep& sweep, const WindowOdometry& odometry,
                                  const WindowOdometry::Step& step, core::DiagnosticsLevel level);
 

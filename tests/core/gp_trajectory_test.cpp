@@ -32,14 +32,6 @@ class EveryProcess : public ::testing::TestWithParam<GpCase> {
 INSTANTIATE_TEST_SUITE_P(Gp, EveryProcess, ::testing::ValuesIn(tests::every_gp()),
                          [](const auto& each) { return each.param.name; });
 
-/// A state's rows as differences from another one, in the tangent that Jacobians are written in.
-StateVector difference_of(const Kinematics& a, const Kinematics& b) {
-  StateVector d;
-  d << se3::log(b.T_world_body.inverse() * a.T_world_body), a.v_world - b.v_world, a.omega_body - b.omega_body,
-      a.a_world - b.a_world, a.alpha_body - b.alpha_body;
-  return d;
-}
-
 GpTrajectory moved(const GpTrajectory& trajectory, int parameter, double step) {
   GpTrajectory out = trajectory;
   Eigen::VectorXd d = Eigen::VectorXd::Zero(trajectory.parameters());
@@ -56,14 +48,14 @@ TEST_P(EveryProcess, StateJacobiansMatchCentralDifferences) {
       StateJet jet;
       trajectory.jet(t, Derivative::acceleration, jet);
       EXPECT_EQ(jet.state.T_world_body.matrix(), trajectory.pose(t).matrix()) << ms;
-      EXPECT_LT(difference_of(jet.state, trajectory.at(t)).norm(), 1e-15) << ms;
+      EXPECT_LT(state_difference(trajectory.at(t), jet.state).norm(), 1e-15) << ms;
       Eigen::MatrixXd J = Eigen::MatrixXd::Zero(18, trajectory.parameters());
       J.middleCols(jet.first, jet.columns()) = jet.J;
       Eigen::MatrixXd numeric(18, trajectory.parameters());
       constexpr double step = 1e-5;
       for (int k = 0; k < trajectory.parameters(); ++k) {
         numeric.col(k) =
-            difference_of(moved(trajectory, k, step).at(t), moved(trajectory, k, -step).at(t)) / (2 * step);
+            state_difference(moved(trajectory, k, -step).at(t), moved(trajectory, k, step).at(t)) / (2 * step);
       }
       for (int row = 0; row < 18; row += 3) {
         EXPECT_LT(relative_difference(J.middleRows<3>(row), numeric.middleRows<3>(row)), 1e-6)
@@ -113,7 +105,7 @@ TEST_P(EveryProcess, RatesMatchCentralDifferencesInTime) {
   const GpTrajectory trajectory = tests::random_gp(prior(), 4, 4, 0.4);
   for (const double ms : {1.0, 37.0, 99.0, 150.0, 250.0}) {
     const auto central = [&](double h_ms) -> StateVector {
-      return difference_of(trajectory.at(at_ms(ms + h_ms)), trajectory.at(at_ms(ms - h_ms))) / (2e-3 * h_ms);
+      return state_difference(trajectory.at(at_ms(ms - h_ms)), trajectory.at(at_ms(ms + h_ms))) / (2e-3 * h_ms);
     };
     const StateVector numeric = (4 * central(0.05) - central(0.1)) / 3;
     const StateVector rate = trajectory.rate(at_ms(ms), Derivative::acceleration);
@@ -138,7 +130,7 @@ TEST_P(EveryProcess, HitsItsKnotsAndApproachesThem) {
     const StateVector rate = trajectory.rate(knot.t, Derivative::acceleration);
     for (const Duration beside : {Duration(-1), Duration(1)}) {
       if (!trajectory.covers(knot.t + beside)) continue;
-      const StateVector d = difference_of(trajectory.at(knot.t + beside), state);
+      const StateVector d = state_difference(state, trajectory.at(knot.t + beside));
       EXPECT_LT(d.head<12>().norm(), 5e-9 * (100 + rate.head<12>().norm()));
       // Jerk and snap on the other side of the knot are others, but no more than tens of times.
       if (prior().model != GpModel::wnoa) {
@@ -235,7 +227,7 @@ TEST_P(EveryProcess, ForgetsKnotsAndKeepsTheMotionAfterThem) {
   after.drop(before.first_block_at(at_ms(250)));
   EXPECT_EQ(after.begin(), at_ms(200));
   for (const double ms : {200.0, 250.0, 300.0, 471.0}) {
-    EXPECT_EQ(difference_of(after.at(at_ms(ms)), before.at(at_ms(ms))).tail<12>().norm(), 0) << ms;
+    EXPECT_EQ(state_difference(before.at(at_ms(ms)), after.at(at_ms(ms))).tail<12>().norm(), 0) << ms;
     EXPECT_EQ(after.pose(at_ms(ms)).matrix(), before.pose(at_ms(ms)).matrix());
   }
   PriorJet a, b;
@@ -389,7 +381,7 @@ TEST(PublishedAcceleration, IsThreeHalvesOfTheExactTermForSmallTurns) {
 TEST(GpKnot, IsTheKinematicsSeenFromTheBody) {
   const GpTrajectory trajectory = tests::random_gp(tests::every_gp()[1].prior(), 15, 2, 0.4);
   const Kinematics state = trajectory.at(at_ms(40)), back = kinematics(gp_knot(at_ms(40), state));
-  EXPECT_LT(difference_of(state, back).norm(), 1e-13);
+  EXPECT_LT(state_difference(back, state).norm(), 1e-13);
   const GpKnot still_in_world = gp_knot(at_ms(0), {SE3::Identity(), {2, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}});
   // A body that turns to the left while it drifts along x sees its velocity turn to the right.
   EXPECT_LT((still_in_world.dvarpi.head<3>() - Eigen::Vector3d(0, -2, 0)).norm(), 1e-15);

@@ -4,11 +4,11 @@
     tarmac sweep trajectory-models -o out-models
     tests/estimators/trajectory_models.py out-models --tarmac build/release/tarmac --figure docs/img/trajectory-models.svg
 
-Prints a Markdown table a drive: for every method its degrees of freedom a sweep; the geometric mean over seeds of deskew error and
-one-sweep error with a 95 % interval (of the mean logarithm, by Student's t), ATE, condition of the 6-DOF block, by what factor
-its stated deviations are too small and how many poses their 95 % ellipsoids cover, and what a sweep costs; and, below, the
-paired ratio of every method with an IMU to ct-icp in deskew error (seed by seed). The figure has a panel a drive: deskew
-error by method above, over degrees of freedom below.
+Prints a Markdown table a drive: for every method its degrees of freedom a sweep; the geometric mean over seeds of deskew error
+and one-sweep error with a 95 % interval (of the mean logarithm, by Student's t), ATE, how many sweeps are scored, condition
+of the 6-DOF block, by what factor its stated deviations are too small and how many poses their 95 % ellipsoids cover, and
+what a sweep costs; and, below, the paired ratio of every method with an IMU to ct-icp in deskew error (seed by seed). The
+figure has a panel a drive: deskew error by method above, over degrees of freedom below.
 
 Exit code 1 when a cell is missing or did not end well.
 """
@@ -22,8 +22,8 @@ import tempfile
 
 DESKEW, STEP, ATE, TIME = "deskew_error_rms_m", "rpe_1sweep_trans_rmse_m", "ate_se3_rmse_m", "sweep_time_p50_ms"
 CONDITION, ROOT, COVERED = "solve_condition_6dof_median", "anees_root_per_dof", "nees_covered_percent"
-DEGENERATE = "oracle_degenerate_percent"
-METRICS = [DESKEW, STEP, ATE, TIME, CONDITION, ROOT, COVERED, DEGENERATE]
+DEGENERATE, SCORED = "oracle_degenerate_percent", "coverage_percent"
+METRICS = [DESKEW, STEP, ATE, TIME, CONDITION, ROOT, COVERED, DEGENERATE, SCORED]
 # Unknowns of the motion a sweep of 0.1 s: six a pose or control point, and as many for each derivative of a knot.
 DOF = {"rigid": 6, "constant-velocity": 6, "two-pose-slerp": 12, "two-pose-screw": 12, "spline-100ms": 6, "spline-50ms": 12,
        "spline-25ms": 24, "spline-per-sweep": 6, "wnoa": 12, "wnoj": 18, "singer": 18, "two-pose-slerp-imu": 12,
@@ -86,11 +86,11 @@ def print_drive(drive, methods):
     seeds = sorted({s for cell in methods.values() for s in cell[DESKEW]})
     degenerate = average(next(iter(methods.values()))[DEGENERATE])
     print(f"### {drive}\n\nSeeds {', '.join(map(str, seeds))}; {degenerate} % of the sweeps degenerate by the oracle.\n")
-    print("| method | DOF | deskew error [mm] | one-sweep error [mm] | ATE [m] | condition | sigmas too small | covered [%] | ms |")
-    print("|---|---:|---|---|---:|---:|---:|---:|---:|")
+    print("| method | DOF | deskew error [mm] | one-sweep error [mm] | ATE [m] | scored [%] | condition | sigmas too small | "
+          "covered [%] | ms |\n|---|---:|---|---|---:|---:|---:|---:|---:|---:|")
     for method, cell in methods.items():
         print(f"| `{method}` | {DOF.get(method, 'by motion')} | {text(cell[DESKEW], 1e3)} | {text(cell[STEP], 1e3)} | "
-              f"{mean(cell[ATE].values())[0]:.3f} | {text(cell[CONDITION], 1, False)} | {text(cell[ROOT], 1, False)} | "
+              f"{mean(cell[ATE].values())[0]:.3f} | {average(cell[SCORED])} | {text(cell[CONDITION], 1, False)} | {text(cell[ROOT], 1, False)} | "
               f"{average(cell[COVERED])} | {text(cell[TIME], 1, False)} |")
     print()
     if "ct-icp" not in methods:
@@ -176,11 +176,13 @@ def write_figure(path, drives):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder")
+    parser.add_argument("folder", nargs="+", help="several: parts of the sweep, run one by one")
     parser.add_argument("--tarmac", default="tarmac")
     parser.add_argument("--figure")
     arguments = parser.parse_args()
-    drives = read(arguments.tarmac, arguments.folder)
+    drives = {}
+    for folder in arguments.folder:
+        drives.update(read(arguments.tarmac, folder))
     for drive, methods in drives.items():
         print_drive(drive, methods)
     if arguments.figure:
