@@ -4,11 +4,11 @@
     tarmac sweep trajectory-models -o out-models
     tests/estimators/trajectory_models.py out-models --tarmac build/release/tarmac --figure docs/img/trajectory-models.svg
 
-Prints a Markdown table a drive: for every method its degrees of freedom a sweep; the geometric mean over seeds of deskew error
+Prints a Markdown table a drive: for every method the unknowns of its motion a sweep; the geometric mean over seeds of deskew error
 and one-sweep error with a 95 % interval (of the mean logarithm, by Student's t), ATE, how many sweeps are scored, condition
 of the 6-DOF block, by what factor its stated deviations are too small and how many poses their 95 % ellipsoids cover, and
 what a sweep costs; and, below, the paired ratio of every method with an IMU to ct-icp in deskew error (seed by seed). The
-figure has a panel a drive: deskew error by method above, over degrees of freedom below.
+figure has a panel a drive: deskew error by method above, over those unknowns below.
 
 Exit code 1 when a cell is missing or did not end well.
 """
@@ -24,10 +24,12 @@ DESKEW, STEP, ATE, TIME = "deskew_error_rms_m", "rpe_1sweep_trans_rmse_m", "ate_
 CONDITION, ROOT, COVERED = "solve_condition_6dof_median", "anees_root_per_dof", "nees_covered_percent"
 DEGENERATE, SCORED = "oracle_degenerate_percent", "coverage_percent"
 METRICS = [DESKEW, STEP, ATE, TIME, CONDITION, ROOT, COVERED, DEGENERATE, SCORED]
-# Unknowns of the motion a sweep of 0.1 s: six a pose or control point, and as many for each derivative of a knot.
+# Methods in the order of tables and figure, with the unknowns of their motion a sweep of 0.1 s: six a pose or control point, and
+# as many for each derivative of a knot; None: by the motion (6 to 24), not in the lower panels.
 DOF = {"rigid": 6, "constant-velocity": 6, "two-pose-slerp": 12, "two-pose-screw": 12, "spline-100ms": 6, "spline-50ms": 12,
        "spline-25ms": 24, "spline-per-sweep": 6, "wnoa": 12, "wnoj": 18, "singer": 18, "two-pose-slerp-imu": 12,
-       "two-pose-screw-imu": 12, "spline-100ms-imu": 6, "spline-50ms-imu": 12, "spline-25ms-imu": 24, "wnoa-imu": 24,
+       "two-pose-screw-imu": 12, "spline-100ms-imu": 6, "spline-50ms-imu": 12, "spline-25ms-imu": 24,
+       "spline-nonuniform-imu": None, "wnoa-imu": 24,
        "wnoj-imu": 36, "singer-imu": 36, "spline-25ms-imu-offset": 24, "singer-imu-offset": 36, "kiss-icp": 6, "ct-icp": 12,
        "kiss-icp-imu": 6, "steam-lo": 12, "steam-lio": 12, "batch-spline": 24}
 FIELD = "estimators.composed.profile="
@@ -52,7 +54,8 @@ def read(tarmac, folder):
                 for metric in METRICS:
                     if row[metric]:
                         cell[metric][int(row["seed"])] = float(row[metric])
-        return drives
+        order = list(DOF)
+        return {drive: dict(sorted(cells.items(), key=lambda cell: order.index(cell[0]))) for drive, cells in drives.items()}
 
 
 def mean(values):
@@ -86,10 +89,10 @@ def print_drive(drive, methods):
     seeds = sorted({s for cell in methods.values() for s in cell[DESKEW]})
     degenerate = average(next(iter(methods.values()))[DEGENERATE])
     print(f"### {drive}\n\nSeeds {', '.join(map(str, seeds))}; {degenerate} % of the sweeps degenerate by the oracle.\n")
-    print("| method | DOF | deskew error [mm] | one-sweep error [mm] | ATE [m] | scored [%] | condition | sigmas too small | "
+    print("| method | unknowns a sweep | deskew error [mm] | one-sweep error [mm] | ATE [m] | scored [%] | condition | sigmas too small | "
           "covered [%] | ms |\n|---|---:|---|---|---:|---:|---:|---:|---:|---:|")
     for method, cell in methods.items():
-        print(f"| `{method}` | {DOF.get(method, 'by motion')} | {text(cell[DESKEW], 1e3)} | {text(cell[STEP], 1e3)} | "
+        print(f"| `{method}` | {DOF[method] or '6 to 24'} | {text(cell[DESKEW], 1e3)} | {text(cell[STEP], 1e3)} | "
               f"{mean(cell[ATE].values())[0]:.3f} | {average(cell[SCORED])} | {text(cell[CONDITION], 1, False)} | {text(cell[ROOT], 1, False)} | "
               f"{average(cell[COVERED])} | {text(cell[TIME], 1, False)} |")
     print()
@@ -112,7 +115,7 @@ class Panels:
         total = self.LEFT + (self.WIDTH + self.GAP) * len(drives) + 10
         self.parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {total} {height}" font-family="sans-serif" '
                       f'font-size="11" fill="#222"><rect width="{total}" height="{height}" fill="#fff"/>',
-                      f'<text x="12" y="22" font-size="14">{title}</text>']
+                      f'<text x="12" y="20" font-size="14">{title[0]}</text>', f'<text x="12" y="36">{title[1]}</text>']
 
     def left(self, column):
         return self.LEFT + column * (self.WIDTH + self.GAP)
@@ -130,7 +133,9 @@ class Panels:
         for decade in range(self.low, self.high + 1):
             at = self.x(column, 10.0 ** decade)
             self.parts.append(f'<line x1="{at:.1f}" y1="{top}" x2="{at:.1f}" y2="{top + height}" stroke="#ddd"/>')
-            self.text(at, top + height + 14, {-3: "1 mm", -2: "1 cm", -1: "10 cm", 0: "1 m"}.get(decade, f"1e{decade} m"))
+            if (decade - self.low) % 2 == 1:
+                names = {-4: "0.1 mm", -3: "1 mm", -2: "1 cm", -1: "10 cm", 0: "1 m", 1: "10 m"}
+                self.text(at, top + height + 14, names.get(decade, f"1e{decade} m"))
 
     def dot(self, column, y, method, values):
         m, a, b = mean(values)
@@ -147,18 +152,18 @@ class Panels:
 
 
 def write_figure(path, drives):
-    methods = list(dict.fromkeys(m for cells in drives.values() for m in cells))
-    row, top = 17, 60
+    methods = [m for m in DOF if any(m in cells for cells in drives.values())]
+    row, top = 17, 70
     upper = row * len(methods)
     lower_top, lower = top + upper + 60, 150
-    panels = Panels(drives, lower_top + lower + 30, "Deskew error by trajectory model (above) and over its degrees of freedom "
-                    "a sweep (below): geometric mean over seeds, bar: 95 % interval; orange: with IMU")
-    levels = sorted(set(DOF.values()))
+    panels = Panels(drives, lower_top + lower + 30, ("Deskew error by trajectory model", "geometric mean over seeds, bar: its "
+                    "95 % interval; orange: with IMU; below: the same over the motion's unknowns a sweep"))
+    levels = sorted({dof for dof in DOF.values() if dof})
     height_of = {dof: lower_top + lower * (1 - (k + 0.5) / len(levels)) for k, dof in enumerate(levels)}
     for k, method in enumerate(methods):
         panels.text(panels.LEFT - 8, top + row * (k + 0.7), method, "end")
     for dof, y in height_of.items():
-        panels.text(panels.LEFT - 8, y + 4, f"{dof} DOF", "end")
+        panels.text(panels.LEFT - 8, y + 4, f"{dof} unknowns", "end")
     for column, (drive, cells) in enumerate(drives.items()):
         panels.text(panels.left(column) + panels.WIDTH / 2, top - 8, drive)
         panels.frame(column, top, upper)
@@ -168,7 +173,7 @@ def write_figure(path, drives):
                 continue
             values = cells[method][DESKEW].values()
             panels.dot(column, top + row * (k + 0.5), method, values)
-            if method in DOF:
+            if DOF[method]:
                 # Beside each other where degrees of freedom are equal.
                 panels.dot(column, height_of[DOF[method]] + 0.5 * (k % 17 - 8), method, values)
     panels.write(path)
