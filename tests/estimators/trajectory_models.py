@@ -23,6 +23,7 @@ import tempfile
 DESKEW, STEP, ATE, TIME = "deskew_error_rms_m", "rpe_1sweep_trans_rmse_m", "ate_se3_rmse_m", "sweep_time_p50_ms"
 CONDITION, ROOT, COVERED = "solve_condition_6dof_median", "anees_root_per_dof", "nees_covered_percent"
 DEGENERATE, SCORED = "oracle_degenerate_percent", "coverage_percent"
+STATUS = "status"
 METRICS = [DESKEW, STEP, ATE, TIME, CONDITION, ROOT, COVERED, DEGENERATE, SCORED]
 # Methods in the order of tables and figure, with the unknowns of their motion a sweep of 0.1 s: six a pose or control point, and
 # as many for each derivative of a knot; None: by the motion (6 to 24), not in the lower panels.
@@ -36,13 +37,12 @@ FIELD = "estimators.composed.profile="
 STUDENT_975 = {1: 12.706, 2: 4.303, 3: 3.182, 4: 2.776, 5: 2.571, 6: 2.447, 7: 2.365, 8: 2.306, 9: 2.262}
 
 
-def read(tarmac, folder):
-    """{drive: {method: {metric: {seed: value}}}}; methods in the sweep's order."""
+def read(tarmac, folder, drives):
+    """Adds a folder's cells to {drive: {method: {metric: {seed: value}}}}."""
     with tempfile.TemporaryDirectory() as scratch:
         path = os.path.join(scratch, "cells.csv")
         subprocess.run([tarmac, "table", folder, "--cells", "--metrics", ",".join(METRICS), "--csv", path],
                        check=True, stdout=subprocess.DEVNULL)
-        drives = {}
         with open(path, newline="") as file:
             for row in csv.DictReader(file):
                 case = row["case"]
@@ -50,12 +50,24 @@ def read(tarmac, folder):
                 method = case.split(FIELD)[1] if FIELD in case else row["estimator"]
                 if row["status"] != "ok":
                     sys.exit(f"{drive}, {method}, seed {row['seed']} is {row['status']}: run the sweep to its end")
-                cell = drives.setdefault(drive, {}).setdefault(method, {m: {} for m in METRICS})
+                cell, seed = drives.setdefault(drive, {}).setdefault(method, {m: {} for m in [STATUS, *METRICS]}), int(row["seed"])
+                if seed in cell[STATUS]:
+                    sys.exit(f"{drive}, {method}, seed {seed} is in two folders")
+                cell[STATUS][seed] = row["status"]
                 for metric in METRICS:
                     if row[metric]:
-                        cell[metric][int(row["seed"])] = float(row[metric])
-        order = list(DOF)
-        return {drive: dict(sorted(cells.items(), key=lambda cell: order.index(cell[0]))) for drive, cells in drives.items()}
+                        cell[metric][seed] = float(row[metric])
+
+
+def complete(drives):
+    """The same, methods in the order of DOF; exits where a method of a drive, or a seed of it, is missing."""
+    for drive, cells in drives.items():
+        seeds = {seed for cell in cells.values() for seed in cell[STATUS]}
+        for method in DOF:
+            missing = seeds - set(cells[method][STATUS] if method in cells else ())
+            if missing:
+                sys.exit(f"{drive}, {method}: no seed {', '.join(map(str, sorted(missing)))}: run the sweep to its end")
+    return {drive: {method: cells[method] for method in DOF} for drive, cells in drives.items()}
 
 
 def mean(values):
@@ -86,7 +98,7 @@ def average(values):
 
 
 def print_drive(drive, methods):
-    seeds = sorted({s for cell in methods.values() for s in cell[DESKEW]})
+    seeds = sorted(next(iter(methods.values()))[STATUS])
     degenerate = average(next(iter(methods.values()))[DEGENERATE])
     print(f"### {drive}\n\nSeeds {', '.join(map(str, seeds))}; {degenerate} % of the sweeps degenerate by the oracle.\n")
     print("| method | unknowns a sweep | deskew error [mm] | one-sweep error [mm] | ATE [m] | scored [%] | condition | sigmas too small | "
@@ -187,7 +199,8 @@ def main():
     arguments = parser.parse_args()
     drives = {}
     for folder in arguments.folder:
-        drives.update(read(arguments.tarmac, folder))
+        read(arguments.tarmac, folder, drives)
+    drives = complete(drives)
     for drive, methods in drives.items():
         print_drive(drive, methods)
     if arguments.figure:
