@@ -9,11 +9,11 @@
 /// that form can: when its sections are linearised at different points.
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <stdexcept>
 
 #include "core/gp_trajectory.h"
+#include "core/symmetric_eigen.h"
 
 namespace tarmac::core {
 namespace {
@@ -31,7 +31,7 @@ GpCovariance checked(const Eigen::MatrixXd& raw) {
   GpCovariance out{0.5 * (raw + raw.transpose()), false};
   const Eigen::VectorXd sigma = out.P.diagonal().cwiseAbs().cwiseSqrt();
   const Eigen::VectorXd inverse = sigma.unaryExpr([](double s) { return s > 0 ? 1 / s : 0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * out.P * inverse.asDiagonal());
+  const SymmetricEigen eigen(inverse.asDiagonal() * out.P * inverse.asDiagonal());
   if (eigen.eigenvalues()[0] >= -kRounding) return out;
   const Eigen::MatrixXd V = sigma.asDiagonal() * eigen.eigenvectors();
   out.P = V * eigen.eigenvalues().cwiseMax(0).asDiagonal() * V.transpose();
@@ -48,7 +48,7 @@ Derivative highest(const GpPrior& prior) {
 GpBlock root_of(const GpBlock& noise) {
   const auto sigma = noise.diagonal().cwiseMax(0).cwiseSqrt().eval();
   const auto inverse = sigma.unaryExpr([](double s) { return s > 0 ? 1 / s : 0; }).eval();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * noise * inverse.asDiagonal());
+  const SymmetricEigen eigen(inverse.asDiagonal() * noise * inverse.asDiagonal());
   return sigma.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/shortest_turn.h"
 
 namespace tarmac::metrics {
 
@@ -89,7 +90,7 @@ Eigen::Matrix3d fit_rotation(const Eigen::Matrix3d& H, double count, const Eigen
   if (sigma[1] < kOnALine * sigma[0]) {
     if (note) *note = kNoteLine;
     // R v = u is all that H asks. Nearest to P is Q P with the smallest turn Q that carries P v onto u.
-    return Eigen::Quaterniond::FromTwoVectors(R_preferred * V.col(0), U.col(0)).toRotationMatrix() * R_preferred;
+    return core::shortest_turn(R_preferred * V.col(0), U.col(0)).toRotationMatrix() * R_preferred;
   }
   const double sign = U.determinant() * V.determinant() < 0 ? -1 : 1;
   return U * Eigen::Vector3d(1, 1, sign).asDiagonal() * V.transpose();

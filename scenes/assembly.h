@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "core/shortest_turn.h"
 #include "scenes/primitives/mesh_builder.h"
 #include "scenes/scene.h"
 
@@ -32,7 +33,7 @@ class Assembly {
     const double z = ground_->height_m(x_m, y_m, &gradient);
     const Eigen::Vector3d up = Eigen::Vector3d(-gradient.x(), -gradient.y(), 1).normalized();
     core::SE3 T = place(x_m, y_m, z);
-    T.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up).toRotationMatrix() *
+    T.linear() = core::shortest_turn(Eigen::Vector3d::UnitZ(), up).toRotationMatrix() *
                  Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     put(mesh, label, T);
   }

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/knots.h"
 #include "core/spline_fit.h"
+#include "core/shortest_turn.h"
 #include "estimators/dead_reckoning/sample_chain.h"
 #include "estimators/window/ceres_window.h"
 
@@ -65,7 +66,7 @@ void check_effect(const BatchSplineOptions& options) {
 core::SplineTrajectory levelled(const WindowState& state) {
   const auto& spline = dynamic_cast<const core::SplineTrajectory&>(*state.trajectory);
   SE3 T_level_map = SE3::Identity();
-  T_level_map.linear() = Eigen::Quaterniond::FromTwoVectors(state.gravity_map, -Vector3d::UnitZ()).toRotationMatrix();
+  T_level_map.linear() = core::shortest_turn(state.gravity_map, -Vector3d::UnitZ()).toRotationMatrix();
   std::vector<SE3> control_points;
   for (const SE3& T : spline.control_points()) control_points.push_back(core::se3::normalized(T_level_map * T));
   return {spline.kind(), spline.order(), std::move(control_points), spline.knots()};

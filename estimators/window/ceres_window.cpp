@@ -2,11 +2,11 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 #include <set>
 
+#include "core/symmetric_eigen.h"
 #include "estimators/blocks/ceres_loss.h"
 #include "estimators/window/gravity_direction.h"
 
@@ -175,7 +175,7 @@ class MarginalCost final : public ceres::CostFunction {
   MarginalCost(const MarginalPrior& prior, const Increments& increments, const std::vector<int>& scalars,
                const std::vector<std::size_t>& blocks)
       : prior_(prior), increments_(increments), scalars_(scalars), blocks_(blocks) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(prior.information().H);
+    const core::SymmetricEigen eigen(prior.information().H);
     const double least = 1e-15 * eigen.eigenvalues().maxCoeff();
     const auto rank = static_cast<Index>((eigen.eigenvalues().array() > least).count());
     const auto values = eigen.eigenvalues().tail(rank);

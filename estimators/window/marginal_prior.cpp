@@ -1,10 +1,10 @@
 #include "estimators/window/marginal_prior.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 
+#include "core/symmetric_eigen.h"
 #include "estimators/window/gravity_direction.h"
 
 namespace tarmac::estimators {
@@ -28,7 +28,7 @@ MatrixXd pseudo_solve(const MatrixXd& H, const MatrixXd& X) {
   const MatrixXd unit = scale.asDiagonal() * H * scale.asDiagonal(), x = scale.asDiagonal() * X;
   const Eigen::LLT<MatrixXd> llt(unit);
   if (llt.info() == Eigen::Success && llt.rcond() > kWellConditioned) return scale.asDiagonal() * llt.solve(x);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(unit);
+  const core::SymmetricEigen eigen(unit);
   const double least = kSmallestEigenvalue * eigen.eigenvalues().maxCoeff();
   const VectorXd inverse =
       eigen.eigenvalues().unaryExpr([least](double value) { return value > least ? 1 / value : 0.0; });
@@ -51,7 +51,7 @@ Schur marginalise(const Eigen::Ref<const MatrixXd>& H, const Eigen::Ref<const Ve
   }
   result.H = ((result.H + result.H.transpose()) / 2).eval();
   if (!(threshold > 0) || k == 0) return result;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(result.H);
+  const core::SymmetricEigen eigen(result.H);
   const double least = threshold * eigen.eigenvalues().maxCoeff();
   // Written as a product of a matrix with itself, so that rounding leaves no negative eigenvalue but its own.
   MatrixXd kept = eigen.eigenvectors();

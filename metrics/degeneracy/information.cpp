@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/symmetric_eigen.h"
+
 namespace tarmac::metrics {
 
 using core::Matrix6;
@@ -56,7 +58,7 @@ double Spectrum::condition() const {
 }
 
 Spectrum spectrum_of(const Eigen::MatrixXd& symmetric) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (symmetric + symmetric.transpose()));
+  const core::SymmetricEigen solver(0.5 * (symmetric + symmetric.transpose()));
   return {solver.eigenvalues().cwiseMax(0.0), solver.eigenvectors()};
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/shortest_turn.h"
+
 namespace tarmac::scenes {
 
 using Eigen::Vector3d;
@@ -189,7 +191,7 @@ void add_bar(MeshBuilder& b, const std::vector<Vector3d>& line, double radius_m,
     if (i == 0) {
       complete_frame(next_axis, u, v);
     } else {  // turned along with the axis by the shortest way, so that the bar does not twist
-      const auto turn = Eigen::Quaterniond::FromTwoVectors(axis, next_axis);
+      const Eigen::Quaterniond turn = core::shortest_turn(axis, next_axis);
       u = turn * u;
       v = turn * v;
     }

@@ -5,11 +5,12 @@
 
 #include "core/error.h"
 #include "core/spline_trajectory.h"
+#include "tests/core/spline_cases.h"
 
 namespace tarmac::core {
 namespace {
 
-constexpr std::int64_t kOrigin_ns = 1'700'000'000'000'000'123;
+using spline_cases::kOrigin_ns;
 constexpr Duration kMs{1'000'000};
 const Time kStart = time_from_ns(kOrigin_ns);
 

@@ -6,16 +6,17 @@
 #include "core/error.h"
 #include "core/knots.h"
 #include "core/random.h"
+#include "tests/core/spline_cases.h"
 #include "tests/support/numeric.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tarmac::core {
 namespace {
 
+using spline_cases::kOrigin_ns;
 using tests::message_of;
 using tests::pose_difference;
 
-constexpr std::int64_t kOrigin_ns = 1'700'000'000'000'000'123;
 constexpr double kPi = 3.14159265358979323846;
 
 /// A slalom with a swaying body: 8 m/s, turns at 1 rad/s, frequencies of 0.3 and 0.7 Hz.

@@ -11,7 +11,7 @@ namespace {
 
 using core::SE3;
 
-constexpr int kSweeps = 26;
+constexpr int kBatchSweeps = 26;
 
 BatchSplineOptions room_options() {
   BatchSplineOptions options;
@@ -27,12 +27,12 @@ struct Survey {
     core::Rig rig = tests::room_rig();
     const tests::Motion body = [](double t_s) { return tests::room_motion(t_s, 1.5); };
     const tests::Motion lidar = [&](double t_s) -> SE3 { return body(t_s) * rig.lidars[0].T_body_lidar; };
-    const std::vector<core::ImuSample> imu = tests::room_imu(rig, body, 0.1 * kSweeps + 0.05, offset_s);
+    const std::vector<core::ImuSample> imu = tests::room_imu(rig, body, 0.1 * kBatchSweeps + 0.05, offset_s);
     if (!with_imu) rig.imus.clear();
     method = std::make_unique<BatchSpline>(options, EstimatorContext{.rig = rig});
     const tests::Room room;
     std::size_t next = 0;
-    for (int k = 0; k < kSweeps; ++k) {
+    for (int k = 0; k < kBatchSweeps; ++k) {
       const core::LidarSweep sweep = tests::sweep_of(room, k, lidar, {.rings = 24, .columns = 256});
       for (; with_imu && next < imu.size() && imu[next].t <= sweep.end; ++next) method->add(imu[next]);
       estimate.sweeps.push_back(method->add(sweep).result);

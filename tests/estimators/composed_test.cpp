@@ -21,7 +21,7 @@ namespace {
 
 using core::SE3;
 
-constexpr int kSweeps = 28;
+constexpr int kComposedSweeps = 28;
 
 ComposedOptions composed_profile(const std::string& name) {
   ComposedOptions options;
@@ -44,7 +44,7 @@ class Drive {
   explicit Drive(double strength = 1, double imu_offset_s = 0, int columns = 128)
       : columns_(columns),
         motion_([strength](double t_s) { return tests::room_motion(t_s, strength); }),
-        imu_(tests::room_imu(rig_, motion_, 0.1 * kSweeps + 0.05, imu_offset_s)) {}
+        imu_(tests::room_imu(rig_, motion_, 0.1 * kComposedSweeps + 0.05, imu_offset_s)) {}
 
   using EachSweep = std::function<void(const WindowOdometry::Step&, const SE3& T_map_body_true, core::Time end)>;
   Outcome run(WindowOdometry& odometry, const EachSweep& each = {}, const std::set<int>& missing = {}) const {
@@ -54,7 +54,7 @@ class Drive {
     int count = 0;
     SE3 T_map_world = SE3::Identity();
     bool first = true;
-    for (int k = 0; k < kSweeps; ++k) {
+    for (int k = 0; k < kComposedSweeps; ++k) {
       if (missing.contains(k)) continue;
       const core::LidarSweep sweep = sweep_of(k);
       while (next < imu_.size() && imu_[next].t <= sweep.end) odometry.add(imu_[next++]);
@@ -114,7 +114,7 @@ TEST_P(EveryProfile, FollowsADriveThroughARoom) {
   const bool with_imu = GetParam().find("imu") != std::string::npos;
   // Without an IMU the first sweep starts it; with one, the first that begins a second of rest later.
   EXPECT_EQ(outcome.initialising, with_imu ? 10 : 0);
-  EXPECT_EQ(outcome.ok, kSweeps - outcome.initialising);
+  EXPECT_EQ(outcome.ok, kComposedSweeps - outcome.initialising);
   // A rigid sweep is wrong by the motion within it, 0.1 to 0.2 m here, one with the last twist by how that changes; the
   // others are to see most of it.
   const bool blind = GetParam() == "rigid" || GetParam() == "constant-velocity";

@@ -78,7 +78,7 @@ core::StateVector start_sigma() {
   return sigma;
 }
 
-constexpr int kSweeps = 12;
+constexpr int kLinearSweeps = 12;
 
 /// Everything that is ever known, sweep after sweep; whoever slides marginalises in between.
 void grow(Window& window, int sweep) {
@@ -119,7 +119,7 @@ TEST(LinearWindow, OneStepIsTheDenseLeastSquaresSolution) {
 
 TEST(LinearWindow, SlidingIsTheBatch) {
   Window batch(model_with_imu(), chain_state(2)), sliding(model_with_imu(), chain_state(2));
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kLinearSweeps; ++sweep) {
     grow(batch, sweep);
     grow(sliding, sweep);
     ASSERT_TRUE(sliding.solve(kOneStep).ok);
@@ -153,7 +153,7 @@ TEST(LinearWindow, SlidingIsTheBatch) {
 TEST(LinearWindow, WithoutTheMarginalPriorSlidingIsNotTheBatch) {
   Window plain(model_with_imu(), chain_state(2)), fixed(model_with_imu(), chain_state(2));
   for (Window* window : {&plain, &fixed}) {
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kLinearSweeps; ++sweep) {
       grow(*window, sweep);
       ASSERT_TRUE(window->solve(kOneStep).ok);
       if (sweep >= 4)
@@ -170,7 +170,7 @@ TEST(LinearWindow, SameBytesAtAnyNumberOfThreads) {
   const auto run = [](std::size_t threads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     Window window(model_with_imu(), chain_state(2));
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kLinearSweeps; ++sweep) {
       grow(window, sweep);
       EXPECT_TRUE(window.solve({.levenberg_marquardt = true, .max_iterations = 3}).ok);
       if (sweep >= 6) window.marginalise_before(kBegin + (sweep - 5) * kSpacing, Marginalisation::eigenvalue);
@@ -231,8 +231,7 @@ TEST(LinearWindow, ReadingsWaitUntilTheTrajectoryCoversThem) {
   const auto readings = [&] {
     int n = 0;
     const WindowProblem now = window.problem();
-    for (const WindowProblem::Item& item : now.items())
-      n += item.kind == WindowProblem::Item::Kind::reading ? 1 : 0;
+    for (const WindowProblem::Item& item : now.items()) n += item.kind == WindowProblem::Item::Kind::reading ? 1 : 0;
     return n;
   };
   add_readings(window, kBegin, kBegin + 3 * kSpacing);

@@ -84,7 +84,7 @@ TEST(KnownAnswerTable, HoldsValuesThatAMetricCouldMiss) {
   EXPECT_GT(answer.rows.at("point_error_se3_rms_m"), 0.05);
 }
 
-Drive wobbly_drive() {
+Drive long_wobbly_drive() {
   DriveShape shape{.sweeps = 60, .columns = 64, .column_spacing = Duration(1'500'000)};
   auto motion = std::make_shared<Wobbly>(Time{}, time_from_s(9));
   return make_drive(motion, shape, [&](int k) {
@@ -96,7 +96,7 @@ Drive wobbly_drive() {
 }
 
 TEST(TruthReplay, HasNoErrorInAnyMetricOnATruthOfNoEstimatorsClass) {
-  const Drive drive = wobbly_drive();
+  const Drive drive = long_wobbly_drive();
   const Estimate replay = make_control(drive.truth, drive.source());
   EXPECT_EQ(replay.estimator, "truth-replay");
   const Evaluation evaluation = drive.evaluate(in_other_map(replay, pose({120, -75, 11}, {0, 0, 2.3})));
@@ -115,7 +115,7 @@ TEST(TruthReplay, HasNoErrorInAnyMetricOnATruthOfNoEstimatorsClass) {
 
 TEST(TruthReplay, StaysBelowAMicrometreBetweenItsSamples) {
   // Channels that fire 2.3 us apart: most stamps lie between the poses that the control keeps.
-  Drive drive = wobbly_drive();
+  Drive drive = long_wobbly_drive();
   const auto& motion = *drive.truth.motion;
   for (std::size_t k = 0; k < drive.sweeps.size(); ++k) {
     LidarSweep& sweep = drive.sweeps[k];
@@ -136,13 +136,13 @@ TEST(TruthReplay, StaysBelowAMicrometreBetweenItsSamples) {
 }
 
 TEST(TruthWithKnownError, RefusesAShiftOutOfTheTruthsSpan) {
-  const Drive drive = wobbly_drive();
+  const Drive drive = long_wobbly_drive();
   KnownError error{.shifted_sweep = 59, .shift = duration_from_s(5)};
   EXPECT_THROW(make_control(drive.truth, drive.source(), error), InputError);
 }
 
 TEST(TruthReplay, LosesSweepsThatTheTruthDoesNotCover) {
-  Drive drive = wobbly_drive();
+  Drive drive = long_wobbly_drive();
   drive.truth.motion = std::make_shared<Wobbly>(drive.shape.begin(5), drive.shape.end(54));
   const Estimate replay = make_control(drive.truth, drive.source());
   EXPECT_EQ(replay.sweeps[4].status, SweepStatus::lost);

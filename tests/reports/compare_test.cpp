@@ -10,6 +10,7 @@
 
 #include "reports/compare_markdown.h"
 #include "reports/compare_page.h"
+#include "tests/reports/data_block.h"
 
 namespace tarmac::reports {
 namespace {
@@ -46,12 +47,6 @@ CompareInput input(std::vector<CompareRow> rows) {
   in.rows = std::move(rows);
   in.same_recordings = 5;
   return in;
-}
-
-json data_of(const std::string& page) {
-  const std::string open = "<script type=\"application/json\" id=\"tarmac-data\">";
-  const std::size_t from = page.find(open) + open.size();
-  return json::parse(page.substr(from, page.find("</script>", from) - from));
 }
 
 TEST(CompareWords, NameTheLargestSignificantChangeNotTheLargestRatio) {

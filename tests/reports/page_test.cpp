@@ -11,6 +11,7 @@
 
 #include "reports/page_series.h"
 #include "reports/web_bundle.h"
+#include "tests/reports/data_block.h"
 #include "tests/reports/example.h"
 
 namespace tarmac::reports {
@@ -19,14 +20,6 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-json data_of(const std::string& page) {
-  const std::string open = "<script type=\"application/json\" id=\"tarmac-data\">";
-  const std::size_t begin = page.find(open);
-  if (begin == std::string::npos) throw std::runtime_error("the page has no data block");
-  const std::size_t from = begin + open.size();
-  return json::parse(page.substr(from, page.find("</script>", from) - from));
-}
 
 std::size_t count(const std::string& text, const std::string& what) {
   std::size_t n = 0;

@@ -155,7 +155,7 @@ TEST(StoreVersion, AStepThatFailsChangesNothing) {
 }
 
 /// Runs in a process of its own, in which no file may grow beyond a limit: writes fail there as on a full disk.
-int in_child(const std::function<void()>& work) {
+int exit_code_of_child(const std::function<void()>& work) {
   const pid_t pid = ::fork();
   if (pid == 0) {
     std::signal(SIGXFSZ, SIG_IGN);
@@ -183,7 +183,7 @@ TEST(StoreFullDisk, LosesTheTransactionAloneAndIsUsableOnceThereIsRoom) {
   const TemporaryFolder folder;
   constexpr std::size_t kCells = 300;
   { const Store made = Store::create(folder.path(), kIdentity, "", cells(kCells)); }
-  const int code = in_child([&] {
+  const int code = exit_code_of_child([&] {
     Store store = Store::open(folder.path(), Store::Access::read_write);
     store.start(false);
     std::size_t finished = 0, failures = 0;
@@ -219,7 +219,7 @@ TEST(StoreFullDisk, LosesTheTransactionAloneAndIsUsableOnceThereIsRoom) {
 
 TEST(StoreFullDisk, AStoreThatDoesNotFitIsNotMade) {
   const TemporaryFolder folder;
-  const int code = in_child([&] {
+  const int code = exit_code_of_child([&] {
     limit_files(100'000);
     try {
       const Store made = Store::create(folder.path(), kIdentity, "", cells(3000));

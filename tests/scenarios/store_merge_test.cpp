@@ -19,7 +19,7 @@ using testing::SizeIs;
 using namespace scenarios::tests;
 namespace fs = std::filesystem;
 
-constexpr std::size_t kCells = 12;
+constexpr std::size_t kMergeCells = 12;
 
 /// A store in which the named cells are finished, with their files.
 fs::path sweep(const fs::path& folder, const std::vector<Cell>& planned, const std::vector<std::size_t>& finished,
@@ -37,7 +37,7 @@ fs::path sweep(const fs::path& folder, const std::vector<Cell>& planned, const s
 /// Every n-th cell from `first` on.
 std::vector<std::size_t> every(std::size_t n, std::size_t first) {
   std::vector<std::size_t> numbers;
-  for (std::size_t i = first; i < kCells; i += n) numbers.push_back(i);
+  for (std::size_t i = first; i < kMergeCells; i += n) numbers.push_back(i);
   return numbers;
 }
 
@@ -57,13 +57,13 @@ std::size_t merge(const std::vector<fs::path>& from, const fs::path& to) {
 
 TEST(StoreMerge, TwoShardsEqualTheUnshardedStore) {
   const TemporaryFolder folder;
-  const fs::path whole = sweep(folder / "whole", cells(kCells), every(1, 0));
+  const fs::path whole = sweep(folder / "whole", cells(kMergeCells), every(1, 0));
   const fs::path a = sweep(folder / "a", planned(every(2, 0)), every(2, 0));
   const fs::path b = sweep(folder / "b", planned(every(2, 1)), every(2, 1));
-  EXPECT_EQ(merge({a, b}, folder / "merged"), kCells);
+  EXPECT_EQ(merge({a, b}, folder / "merged"), kMergeCells);
   EXPECT_EQ(dump_of(folder / "merged"), dump_of(whole));
   EXPECT_EQ(core::read_file(folder / "merged" / "sweep.yaml"), "name: regression\n");
-  for (std::size_t i = 0; i < kCells; ++i) {
+  for (std::size_t i = 0; i < kMergeCells; ++i) {
     const fs::path file = fs::path(outcome(i).folder) / "kiss-icp" / "evaluation.json";
     EXPECT_EQ(core::read_file(folder.path() / "merged" / file), "of cell " + std::to_string(i));
     EXPECT_TRUE(fs::equivalent(folder.path() / "merged" / file, folder.path() / (i % 2 == 0 ? "a" : "b") / file))
@@ -82,10 +82,10 @@ TEST(StoreMerge, TwoShardsEqualTheUnshardedStore) {
 
 TEST(StoreMerge, ShardsThatEachPlannedTheWholeSweepAndOverlap) {
   const TemporaryFolder folder;
-  const fs::path whole = sweep(folder / "whole", cells(kCells), {0, 1, 2, 3, 4, 5, 6, 7, 8});
-  const fs::path a = sweep(folder / "a", cells(kCells), {0, 1, 2, 3, 4});
-  const fs::path b = sweep(folder / "b", cells(kCells), {3, 4, 5, 6, 7});
-  const fs::path c = sweep(folder / "c", cells(kCells), {7, 8});
+  const fs::path whole = sweep(folder / "whole", cells(kMergeCells), {0, 1, 2, 3, 4, 5, 6, 7, 8});
+  const fs::path a = sweep(folder / "a", cells(kMergeCells), {0, 1, 2, 3, 4});
+  const fs::path b = sweep(folder / "b", cells(kMergeCells), {3, 4, 5, 6, 7});
+  const fs::path c = sweep(folder / "c", cells(kMergeCells), {7, 8});
   EXPECT_EQ(merge({a, b, c}, folder / "merged"), 9u);
   EXPECT_EQ(dump_of(folder / "merged"), dump_of(whole));
   Store merged = Store::open(folder / "merged", Store::Access::read_write);
@@ -98,7 +98,7 @@ TEST(StoreMerge, ShardsThatEachPlannedTheWholeSweepAndOverlap) {
 TEST(StoreMerge, AForgottenShardLeavesLessThanThePlan) {
   const TemporaryFolder folder;
   std::vector<std::string> keys;
-  for (const Cell& one : cells(kCells)) keys.push_back(one.key);
+  for (const Cell& one : cells(kMergeCells)) keys.push_back(one.key);
   StoreIdentity identity = kIdentity;
   identity.plan_hash = plan_hash_of(keys);
   std::vector<fs::path> shards;
@@ -106,7 +106,7 @@ TEST(StoreMerge, AForgottenShardLeavesLessThanThePlan) {
     shards.push_back(sweep(folder / std::to_string(i), planned(every(3, i)), every(3, i), identity));
   EXPECT_EQ(merge({shards[0], shards[2]}, folder / "two"), 8u);
   EXPECT_FALSE(Store::open(folder / "two", Store::Access::read_only).holds_whole_plan());
-  EXPECT_EQ(merge({shards[2], shards[0], shards[1]}, folder / "three"), kCells);
+  EXPECT_EQ(merge({shards[2], shards[0], shards[1]}, folder / "three"), kMergeCells);
   EXPECT_TRUE(Store::open(folder / "three", Store::Access::read_only).holds_whole_plan());
 }
 

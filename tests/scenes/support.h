@@ -37,6 +37,9 @@ void for_each_static_triangle(const scenes::Scene& scene, const Accept& accept, 
   }
 }
 
+inline bool follows_ground(scenes::Label label) {
+  return label == scenes::Label::pavement || label == scenes::Label::marking || label == scenes::Label::terrain;
+}
 inline bool on_the_ground(scenes::Label label) {
   return label == scenes::Label::pavement || label == scenes::Label::marking || label == scenes::Label::vegetation ||
          label == scenes::Label::terrain;

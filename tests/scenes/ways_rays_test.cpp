@@ -20,6 +20,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using sim::raycast::Hits;
 using sim::raycast::Rays;
+using tests::follows_ground;
 
 class Traced {
  public:
@@ -51,10 +52,6 @@ class Traced {
   std::shared_ptr<const Scene> scene_;
   sim::raycast::Tracer tracer_;
 };
-
-bool follows_ground(Label label) {
-  return label == Label::pavement || label == Label::marking || label == Label::terrain;
-}
 
 /// Uniform on the sphere.
 std::vector<Vector3d> directions(std::size_t count, const char* name) {

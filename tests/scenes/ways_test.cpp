@@ -22,6 +22,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using tests::fingerprint;
+using tests::follows_ground;
 using tests::node;
 
 /// Built once each.
@@ -29,10 +30,6 @@ const Scene& scene_of_yaml(const std::string& yaml) {
   static std::map<std::string, Scene> built;
   const auto found = built.find(yaml);
   return found != built.end() ? found->second : built.emplace(yaml, make_scene(node(yaml), 1)).first->second;
-}
-
-bool follows_ground(Label label) {
-  return label == Label::pavement || label == Label::marking || label == Label::terrain;
 }
 
 struct Kind {

@@ -73,6 +73,11 @@ function(tarmac_program target)
   target_link_libraries(${target} PRIVATE ${ARG_LINKS})
 endfunction()
 
+# Most of what a test file takes to compile is templates that its neighbours need as well: GoogleTest's, Eigen's. Files of one
+# program must then not define the same name twice in a nameless namespace. -DTARMAC_TOGETHER=OFF compiles them one by one,
+# which is quicker where one file changes all the time.
+option(TARMAC_TOGETHER "compile the sources of a test program several at a time" ON)
+
 # One program of tests. LABEL is unit (all of them together stay below a minute) or slow. With WHOLE it runs as one test
 # of ctest's, for tests that share something dear.
 function(tarmac_test target)
@@ -82,6 +87,7 @@ function(tarmac_test target)
   endif()
   tarmac_program(${target} SEES ${ARG_SEES} SOURCES ${ARG_SOURCES} LINKS ${ARG_LINKS} GTest::gmock GTest::gtest_main)
   tarmac_use_precompiled(${target} tarmac_precompiled_tests)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${TARMAC_TOGETHER} UNITY_BUILD_BATCH_SIZE 4)
   if(ARG_WHOLE)
     add_test(NAME ${target} COMMAND ${target})
     set_tests_properties(${target} PROPERTIES LABELS ${ARG_LABEL})

@@ -6,6 +6,7 @@
 
 #include "sim/imu/imu.h"
 #include "tests/sim/truth/stand_turn.h"
+#include "tests/support/constants.h"
 
 namespace tarmac::sim {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 using namespace core;
 using Eigen::Vector3d;
 
-constexpr double g = 9.80665;
+using tests::g;
 constexpr double span_s = 60;
 
 struct Closure {

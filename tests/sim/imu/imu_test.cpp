@@ -10,6 +10,7 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "sim/truth/constant_twist.h"
+#include "tests/support/constants.h"
 
 namespace tarmac::sim {
 namespace {
@@ -19,7 +20,7 @@ using Eigen::Vector3d;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr double g = 9.80665;
+using tests::g;
 constexpr double two_pi = 2 * std::numbers::pi;
 
 std::shared_ptr<const SmoothTrajectory> twist(const Vector3d& v, const Vector3d& omega, const SE3& start) {

@@ -7,6 +7,7 @@
 
 #include "sim/imu/imu.h"
 #include "tests/sim/truth/stand_turn.h"
+#include "tests/support/constants.h"
 
 namespace tarmac::sim {
 namespace {
@@ -15,7 +16,7 @@ using namespace core;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double g = 9.80665;
+using tests::g;
 
 struct Closure {
   double position_m, angle_deg;

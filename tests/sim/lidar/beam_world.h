@@ -12,6 +12,8 @@
 
 namespace tarmac::sim::lidar {
 
+inline constexpr const char* kSensor = "ouster-os1-64-gen2";
+
 inline NoiseOptions no_noise() {
   return {.range_scale = 0, .channel_bias_scale = 0, .quantisation = false, .dropout = false, .intensity = false};
 }

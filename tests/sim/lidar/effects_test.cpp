@@ -4,11 +4,12 @@
 #include <numeric>
 
 #include "sim/lidar/effects/echoes.h"
+#include "tests/support/constants.h"
 
 namespace tarmac::sim::lidar {
 namespace {
 
-constexpr double rad = M_PI / 180;
+using tests::rad;
 
 const Profile& ouster() {
   return profile("ouster-os1-64-gen2");

@@ -6,12 +6,13 @@
 #include <set>
 
 #include "sim/raycast/tracer.h"
+#include "tests/support/constants.h"
 
 namespace tarmac::sim::lidar {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double rad = M_PI / 180;
+using tests::rad;
 
 double clockwise_azimuth(const Vector3d& d) {
   return std::atan2(-d.y(), d.x());

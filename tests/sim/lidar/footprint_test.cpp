@@ -14,8 +14,7 @@ namespace {
 using Eigen::Vector3d;
 using truth::ReturnKind;
 
-constexpr const char* sensor = "ouster-os1-64-gen2";
-const Mode mode{2048, 10};
+const Mode kFootprintMode{2048, 10};
 constexpr double near_m = 10, edge_y_m = 0.5;
 constexpr float dark = 0.3f, bright = 0.6f;
 
@@ -81,7 +80,7 @@ std::vector<Beam> beams_of(const SweepSimulator& simulator, const SimulatedSweep
 }
 
 double range_of(const SimulatedSweep& s, std::size_t i) {
-  return s.true_range_m[i] - profile(sensor).range_offset_m;
+  return s.true_range_m[i] - profile(kSensor).range_offset_m;
 }
 
 float intensity_of(double signal) {
@@ -97,7 +96,8 @@ BeamOptions seven(const std::string& returns) {
 
 TEST(Footprint, WallsThirtyCentimetresApartMakeOneMixedPointThatLeansToTheStronger) {
   constexpr double gap_m = 0.3;
-  const SweepSimulator simulator = simulator_of(sensor, mode, step(gap_m), asking(seven("strongest")), no_noise());
+  const SweepSimulator simulator =
+      simulator_of(kSensor, kFootprintMode, step(gap_m), asking(seven("strongest")), no_noise());
   const SimulatedSweep s = simulator.sweep(0);
   std::size_t mixed = 0;
   for (const Beam& beam : beams_of(simulator, s, gap_m)) {
@@ -118,10 +118,11 @@ TEST(Footprint, WallsThirtyCentimetresApartMakeOneMixedPointThatLeansToTheStrong
 TEST(Footprint, WallsThreeMetresApartAreTwoEchoesEachWithItsShare) {
   constexpr double gap_m = 3;
   for (const std::string returns : {"first", "last", "strongest"}) {
-    const SweepSimulator simulator = simulator_of(sensor, mode, step(gap_m), asking(seven(returns)), no_noise());
+    const SweepSimulator simulator =
+        simulator_of(kSensor, kFootprintMode, step(gap_m), asking(seven(returns)), no_noise());
     const SimulatedSweep s = simulator.sweep(0);
     std::size_t edges = 0, at_near = 0;
-    const Detection detection(profile(sensor), 1, "test");
+    const Detection detection(profile(kSensor), 1, "test");
     for (const Beam& beam : beams_of(simulator, s, gap_m)) {
       ASSERT_EQ(beam.points.size(), 1u);
       const std::size_t i = beam.points[0];
@@ -149,9 +150,10 @@ TEST(Footprint, WallsThreeMetresApartAreTwoEchoesEachWithItsShare) {
 
 TEST(Footprint, DualReturnsAreTwoPointsOfOneFiringStrongestFirst) {
   constexpr double gap_m = 3;
-  const SweepSimulator simulator = simulator_of(sensor, mode, step(gap_m), asking(seven("dual")), no_noise());
+  const SweepSimulator simulator =
+      simulator_of(kSensor, kFootprintMode, step(gap_m), asking(seven("dual")), no_noise());
   const SimulatedSweep s = simulator.sweep(0);
-  const Detection detection(profile(sensor), 1, "test");
+  const Detection detection(profile(kSensor), 1, "test");
   std::size_t pairs = 0;
   for (const Beam& beam : beams_of(simulator, s, gap_m)) {
     const Expected& e = beam.expected;
@@ -257,8 +259,10 @@ TEST(Neighbours, SidesOnWhichTheSweepEndsAreOpen) {
 TEST(Footprint, AdaptiveRaysGiveTheFullFootprintsPoints) {
   BeamOptions adaptive = seven("strongest"), full = adaptive;
   full.footprint = "full";
-  const SimulatedSweep a = simulator_of(sensor, mode, yard(), asking(adaptive), no_noise(), 1, driving()).sweep(0);
-  const SimulatedSweep f = simulator_of(sensor, mode, yard(), asking(full), no_noise(), 1, driving()).sweep(0);
+  const SimulatedSweep a =
+      simulator_of(kSensor, kFootprintMode, yard(), asking(adaptive), no_noise(), 1, driving()).sweep(0);
+  const SimulatedSweep f =
+      simulator_of(kSensor, kFootprintMode, yard(), asking(full), no_noise(), 1, driving()).sweep(0);
   EXPECT_LT(a.split_beams, f.split_beams / 3);
   std::map<std::pair<std::int32_t, int>, double> ranges;
   for (std::size_t i = 0; i < f.sweep.size(); ++i) ranges[{f.sweep.t_ns[i], f.sweep.ring[i]}] = f.true_range_m[i];

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "tests/sim/lidar/beam_world.h"
+#include "tests/support/constants.h"
 
 namespace tarmac::sim::lidar {
 namespace {
@@ -14,9 +15,8 @@ namespace {
 using Eigen::Vector3d;
 using truth::ReturnKind;
 
-constexpr double rad = M_PI / 180;
-constexpr const char* sensor = "ouster-os1-64-gen2";
-const Mode mode{1024, 10};
+using tests::rad;
+const Mode kGlassMode{1024, 10};
 
 /// Fresnel by the angles outside and inside: sines and tangents, where the code has cosines and the index.
 struct Face {
@@ -85,7 +85,7 @@ bool slanted(const Vector3d& d) {
 
 TEST(Glass, WhatStandsBehindComesThroughTwice) {
   const SimulatedSweep s =
-      simulator_of(sensor, mode, room(true, false), asking(glazed("last", true)), no_noise()).sweep(0);
+      simulator_of(kSensor, kGlassMode, room(true, false), asking(glazed("last", true)), no_noise()).sweep(0);
   const scenes::Material coated = pane();
   std::size_t seen = 0;
   for (std::size_t i = 0; i < s.sweep.size(); ++i) {
@@ -103,7 +103,7 @@ TEST(Glass, WhatStandsBehindComesThroughTwice) {
 
 TEST(Glass, MirrorGhostStandsBehindThePaneWhereTheImageIs) {
   const SimulatedSweep s =
-      simulator_of(sensor, mode, room(false, true), asking(glazed("last", true)), no_noise()).sweep(0);
+      simulator_of(kSensor, kGlassMode, room(false, true), asking(glazed("last", true)), no_noise()).sweep(0);
   const scenes::Material coated = pane();
   std::size_t seen = 0;
   for (std::size_t i = 0; i < s.sweep.size(); ++i) {
@@ -121,11 +121,11 @@ TEST(Glass, MirrorGhostStandsBehindThePaneWhereTheImageIs) {
 
 TEST(Glass, DirtTransmittedAndGhostAreEchoesOfOneBeam) {
   BeamOptions first = glazed("first", true);
-  const SimulatedSweep near = simulator_of(sensor, mode, room(true, true), asking(first), no_noise()).sweep(0);
+  const SimulatedSweep near = simulator_of(kSensor, kGlassMode, room(true, true), asking(first), no_noise()).sweep(0);
   const SimulatedSweep far =
-      simulator_of(sensor, mode, room(true, true), asking(glazed("last", true)), no_noise()).sweep(0);
+      simulator_of(kSensor, kGlassMode, room(true, true), asking(glazed("last", true)), no_noise()).sweep(0);
   const SimulatedSweep strongest =
-      simulator_of(sensor, mode, room(true, true), asking(glazed("strongest", true)), no_noise()).sweep(0);
+      simulator_of(kSensor, kGlassMode, room(true, true), asking(glazed("strongest", true)), no_noise()).sweep(0);
   // The beam's direction: a point's depends on its range where the origin of the beams is not the sensor's.
   const auto kinds = [](const SimulatedSweep& s) {
     std::map<std::pair<std::uint16_t, std::int32_t>, ReturnKind> kind_of_beam;
@@ -149,7 +149,7 @@ TEST(Glass, DirtTransmittedAndGhostAreEchoesOfOneBeam) {
 
 TEST(Glass, WithoutGhostsAndWithoutGlassOptionNothingIsMirrored) {
   const auto count_kind = [](const BeamOptions& beam, ReturnKind kind) {
-    const SimulatedSweep s = simulator_of(sensor, mode, room(true, true), asking(beam), no_noise()).sweep(0);
+    const SimulatedSweep s = simulator_of(kSensor, kGlassMode, room(true, true), asking(beam), no_noise()).sweep(0);
     return std::count(s.kind.begin(), s.kind.end(), kind);
   };
   EXPECT_EQ(count_kind(glazed("last", false), ReturnKind::ghost), 0);
@@ -162,7 +162,7 @@ TEST(Glass, WithoutGhostsAndWithoutGlassOptionNothingIsMirrored) {
 
 TEST(Glass, ShinesWhereItIsSeenSquareOn) {
   const SimulatedSweep s =
-      simulator_of(sensor, mode, room(true, false), asking(glazed("strongest", true)), no_noise()).sweep(0);
+      simulator_of(kSensor, kGlassMode, room(true, false), asking(glazed("strongest", true)), no_noise()).sweep(0);
   std::size_t glints = 0;
   for (std::size_t i = 0; i < s.sweep.size(); ++i) {
     if (s.kind[i] != ReturnKind::glint) continue;
@@ -180,7 +180,7 @@ TEST(Glass, SecondPaneWeakensAgain) {
   add_wall(scene, 10, -6, 6, 3, 1, scenes::Label::glass);
   add_wall(scene, 10.02, -6, 6, 3, 1, scenes::Label::glass);
   add_wall(scene, 14, -40, 40, 20, 0);
-  const SimulatedSweep s = simulator_of(sensor, mode, scene, asking(glazed("last", false)), no_noise()).sweep(0);
+  const SimulatedSweep s = simulator_of(kSensor, kGlassMode, scene, asking(glazed("last", false)), no_noise()).sweep(0);
   const scenes::Material clear = pane(0.043, 0.918);
   std::size_t seen = 0;
   for (std::size_t i = 0; i < s.sweep.size(); ++i) {

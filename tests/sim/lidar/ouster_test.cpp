@@ -20,6 +20,7 @@
 #include "sim/simulate.h"
 #include "tests/sim/support/motions.h"
 #include "tests/sim/support/shapes.h"
+#include "tests/support/constants.h"
 
 namespace tarmac::sim {
 namespace {
@@ -27,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using core::ConfigNode;
 using Eigen::Vector3d;
-constexpr double rad = M_PI / 180;
+using tests::rad;
 
 double wrapped(double angle_rad) {
   return std::remainder(angle_rad, 2 * M_PI);

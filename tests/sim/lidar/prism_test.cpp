@@ -6,12 +6,13 @@
 #include <set>
 
 #include "sim/lidar/firing.h"
+#include "tests/support/constants.h"
 
 namespace tarmac::sim::lidar {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double rad = M_PI / 180;
+using tests::rad;
 
 Profile mid40() {
   return profile("livox-mid-40");
@@ -21,8 +22,8 @@ double off_axis(const Vector3d& d) {
 }
 
 TEST(Prism, LeaningTheSameWayBendsAsSnellsLawDoesInThePlane) {
-  // In the plane that holds both slants, angles to the axis, positive towards the wedges' thick side: the slanted face's
-  // normal stands at w, so a ray at angle a goes on at w + asin(sin(a - w) / n), and leaves at asin(n sin(.)).
+  // In the plane that holds both slants, angles to the axis, positive towards the wedges' thick side: the slanted
+  // face's normal stands at w, so a ray at angle a goes on at w + asin(sin(a - w) / n), and leaves at asin(n sin(.)).
   const Profile p = mid40();
   const double n = p.prism_refractive_index;
   double angle = 0;

@@ -13,8 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using truth::ReturnKind;
 
-constexpr const char* sensor = "ouster-os1-64-gen2";
-const Mode mode{2048, 10};
+const Mode kSurroundingsMode{2048, 10};
 
 scenes::Scene with_retro(double x_m) {
   scenes::Scene scene = tests::empty_scene();
@@ -46,18 +45,18 @@ std::size_t halos(const SimulatedSweep& s, double x_m) {
 TEST(Halo, BrightTargetsWithinThirtyMetresShowInTheBeamsBeside) {
   BeamOptions beam;
   beam.halo = true;
-  EXPECT_GT(halos(simulator_of(sensor, mode, with_retro(12), asking(beam), no_noise()).sweep(0), 12), 5u);
-  EXPECT_EQ(halos(simulator_of(sensor, mode, with_retro(31), asking(beam), no_noise()).sweep(0), 31), 0u);
+  EXPECT_GT(halos(simulator_of(kSensor, kSurroundingsMode, with_retro(12), asking(beam), no_noise()).sweep(0), 12), 5u);
+  EXPECT_EQ(halos(simulator_of(kSensor, kSurroundingsMode, with_retro(31), asking(beam), no_noise()).sweep(0), 31), 0u);
   BeamOptions off;
   off.returns = "last";
-  EXPECT_EQ(halos(simulator_of(sensor, mode, with_retro(12), asking(off), no_noise()).sweep(0), 12), 0u);
+  EXPECT_EQ(halos(simulator_of(kSensor, kSurroundingsMode, with_retro(12), asking(off), no_noise()).sweep(0), 12), 0u);
 }
 
 TEST(Halo, LeavesTheBeamsOwnEchoForTheLastReturn) {
   BeamOptions dual;
   dual.halo = true;
   dual.returns = "dual";
-  const SimulatedSweep s = simulator_of(sensor, mode, with_retro(12), asking(dual), no_noise()).sweep(0);
+  const SimulatedSweep s = simulator_of(kSensor, kSurroundingsMode, with_retro(12), asking(dual), no_noise()).sweep(0);
   std::size_t pairs = 0;
   for (std::size_t i = 0; i + 1 < s.sweep.size(); ++i) {
     if (s.kind[i] != ReturnKind::retro_halo) continue;
@@ -86,7 +85,8 @@ TEST(OwnBody, HidesWhatIsBelowItAndShowsItsRoof) {
   tests::SteadyMotion motion;
   motion.v_m_s = {3, 1, 0};
   motion.omega_world_rad_s = {0, 0, 0.5};
-  const SweepSimulator simulator = simulator_of(sensor, mode, field(), requests, no_noise(), 1, motion, T_body_lidar);
+  const SweepSimulator simulator =
+      simulator_of(kSensor, kSurroundingsMode, field(), requests, no_noise(), 1, motion, T_body_lidar);
   const SimulatedSweep s = simulator.sweep(0);
   std::size_t self = 0;
   for (std::size_t i = 0; i < s.sweep.size(); ++i) {
@@ -230,7 +230,7 @@ TEST(Everything, IsTheSameHoweverBatchesAreCutAndInWhateverOrderSweepsAreMade) {
 
 TEST(Everything, ShowsEveryKindOfReturn) {
   const SweepSimulator simulator =
-      simulator_of(sensor, mode, everything_scene(), everything(), {}, 5, {}, tests::pose({1.2, 0, 2.0}));
+      simulator_of(kSensor, kSurroundingsMode, everything_scene(), everything(), {}, 5, {}, tests::pose({1.2, 0, 2.0}));
   const SimulatedSweep s = simulator.sweep(0);
   for (const ReturnKind kind : {ReturnKind::surface, ReturnKind::mixed, ReturnKind::edge, ReturnKind::dirt,
                                 ReturnKind::transmitted, ReturnKind::ghost, ReturnKind::glint, ReturnKind::retro_halo,

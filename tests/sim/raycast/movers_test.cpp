@@ -22,7 +22,7 @@ using core::Time;
 using core::time_from_s;
 using Eigen::Vector3d;
 
-constexpr double sweep_s = 0.1;
+constexpr double period_s = 0.1;
 constexpr double begin_s = 2.3;
 
 scenes::Scene cast(const std::string& actors) {
@@ -54,7 +54,7 @@ Rays spin(const Vector3d& from_base) {
   Rays rays;
   rays.resize(columns * channels);
   for (std::size_t k = 0; k < columns; ++k) {
-    const double share = static_cast<double>(k) / columns, azimuth = -2 * M_PI * share, t_s = sweep_s * share;
+    const double share = static_cast<double>(k) / columns, azimuth = -2 * M_PI * share, t_s = period_s * share;
     for (std::size_t c = 0; c < channels; ++c) {
       const std::size_t i = k * channels + c;
       const double elevation = 0.5 * (static_cast<double>(c) / (channels - 1) - 0.5);
@@ -79,7 +79,7 @@ struct Shots {
 
 Shots turn_around(const scenes::Scene& scene, const Vector3d& origin) {
   const Tracer tracer(std::make_shared<scenes::Scene>(scene), {});
-  const SweepTracer sweep = tracer.sweep(time_from_s(begin_s), time_from_s(begin_s + sweep_s), origin, 150);
+  const SweepTracer sweep = tracer.sweep(time_from_s(begin_s), time_from_s(begin_s + period_s), origin, 150);
   Shots shots{spin(origin - sweep.base()), {}, sweep.base()};
   std::vector<std::uint32_t> order(shots.rays.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -224,7 +224,7 @@ TEST(Movers, NoneIsMissedByLookingOnlyWhereItCanBe) {
   const auto hits_in = [&](const scenes::Scene& scene) {
     const Tracer tracer(std::make_shared<scenes::Scene>(scene), {});
     Hits hits;
-    tracer.sweep(time_from_s(begin_s), time_from_s(begin_s + sweep_s), Vector3d::Zero(), 150).trace(rays, order, hits);
+    tracer.sweep(time_from_s(begin_s), time_from_s(begin_s + period_s), Vector3d::Zero(), 150).trace(rays, order, hits);
     return hits;
   };
   const Hits a = hits_in(moving), b = hits_in(standing);
@@ -260,12 +260,12 @@ class Shaking final : public scenes::ActorMotion {
 TEST(Movers, PosesBetweenTheKnotsAreWithinMicrometresOfTheMotion) {
   const Shaking motion;
   const double radius = 2;
-  const int knots = motion_steps(motion.acceleration_bound_m_s2({}, {}, radius), core::duration_from_s(sweep_s));
+  const int knots = motion_steps(motion.acceleration_bound_m_s2({}, {}, radius), core::duration_from_s(period_s));
   std::vector<SE3> poses;
-  for (int k = 0; k < knots; ++k) poses.push_back(motion.T_world_actor(time_from_s(sweep_s * k / (knots - 1))));
-  const PoseTrack track(poses, sweep_s * 1e9);
+  for (int k = 0; k < knots; ++k) poses.push_back(motion.T_world_actor(time_from_s(period_s * k / (knots - 1))));
+  const PoseTrack track(poses, period_s * 1e9);
   double largest = 0;
-  for (double t = 0; t <= sweep_s; t += 0.00037) {
+  for (double t = 0; t <= period_s; t += 0.00037) {
     const Frame frame = track.at(t * 1e9);
     const SE3 exact = motion.T_world_actor(time_from_s(t));
     const Vector3d p = radius * Vector3d(0.5, -0.5, std::sqrt(0.5));

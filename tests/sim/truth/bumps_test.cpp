@@ -11,6 +11,7 @@
 #include "sim/truth/road.h"
 #include "sim/truth/vehicles.h"
 #include "tests/support/numeric_jet.h"
+#include "tests/support/temporary_folder.h"
 
 namespace tarmac::sim::truth {
 namespace {
@@ -90,13 +91,9 @@ vibration: {engine_rms_m_s2: 0, engine_rms_deg_s: 0, rolling_rms_m_s2: 0, rollin
   EXPECT_NEAR(lowest, -8.0 / 2 * 60 / 80, 1);
 }
 
-std::string error_of(const std::string& yaml) {
-  try {
-    make_motion(ConfigNode::parse(yaml, "test.yaml"), duration_from_s(10), nullptr, 1);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+std::string error_of_road(const std::string& yaml) {
+  return tests::message_of<InputError>(
+      [&] { make_motion(ConfigNode::parse(yaml, "test.yaml"), duration_from_s(10), nullptr, 1); });
 }
 
 TEST(Bumps, WheelsThatLeaveTheGroundAreAnErrorWithPlaceAndRemedy) {
@@ -109,11 +106,11 @@ path: [{straight_m: 90}]
 bumps:
   - {kind: cable-ramp, at_m: 20}
 )";
-  EXPECT_THAT(error_of(fast), AllOf(HasSubstr("test.yaml:7"), HasSubstr("bumps"), HasSubstr("leave the ground"),
-                                    HasSubstr("m along the path"), HasSubstr("drive slower")));
-  EXPECT_THAT(error_of("kind: drive\npath: [{straight_m: 9}]\nbumps: [{kind: crub}]\n"),
+  EXPECT_THAT(error_of_road(fast), AllOf(HasSubstr("test.yaml:7"), HasSubstr("bumps"), HasSubstr("leave the ground"),
+                                         HasSubstr("m along the path"), HasSubstr("drive slower")));
+  EXPECT_THAT(error_of_road("kind: drive\npath: [{straight_m: 9}]\nbumps: [{kind: crub}]\n"),
               AllOf(HasSubstr("test.yaml:3"), HasSubstr("bumps.0.kind"), HasSubstr("kerb")));
-  EXPECT_THAT(error_of("kind: drive\nvehicle: vam\npath: [{straight_m: 9}]\n"),
+  EXPECT_THAT(error_of_road("kind: drive\nvehicle: vam\npath: [{straight_m: 9}]\n"),
               AllOf(HasSubstr("test.yaml:2"), HasSubstr("did you mean 'van'")));
 }
 

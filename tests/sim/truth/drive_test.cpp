@@ -10,6 +10,7 @@
 #include "tests/sim/truth/stand_turn.h"
 #include "tests/support/numeric.h"
 #include "tests/support/numeric_jet.h"
+#include "tests/support/temporary_folder.h"
 
 namespace tarmac::sim::truth {
 namespace {
@@ -176,28 +177,24 @@ TEST(Drive, RefusesTimesOutsideItsSpan) {
   EXPECT_THROW(motion->at(Time() - Duration(1)), OutOfSpan);
 }
 
-std::string error_of(const std::string& yaml) {
-  try {
-    drive(yaml, 10);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+std::string error_of_drive(const std::string& yaml) {
+  return tests::message_of<InputError>([&] { drive(yaml, 10); });
 }
 
 TEST(Drive, ErrorsNameFileLineAndField) {
-  EXPECT_THAT(error_of("kind: drive\n"), AllOf(HasSubstr("test.yaml"), HasSubstr("path")));
-  EXPECT_THAT(error_of("kind: drive\npath:\n  - {straight_m: 9}\n  - {turn_deg: 20, radius_m: 5}\n"),
+  EXPECT_THAT(error_of_drive("kind: drive\n"), AllOf(HasSubstr("test.yaml"), HasSubstr("path")));
+  EXPECT_THAT(error_of_drive("kind: drive\npath:\n  - {straight_m: 9}\n  - {turn_deg: 20, radius_m: 5}\n"),
               AllOf(HasSubstr("test.yaml:4"), HasSubstr("path"), HasSubstr("blend_m")));
-  EXPECT_THAT(error_of("kind: drive\npath: [{straight_m: 90}]\nspeed:\n  - {to_m_s: 5}\n  - {to_m_s: 0, by_m: 6}\n"),
-              AllOf(HasSubstr("test.yaml:5"), HasSubstr("speed"), HasSubstr("raise peak_m_s2")));
-  EXPECT_THAT(error_of("kind: drive\npath: [{straight_m: 9}]\nspeed: [{to_m_s: 8}]\n"),
+  EXPECT_THAT(
+      error_of_drive("kind: drive\npath: [{straight_m: 90}]\nspeed:\n  - {to_m_s: 5}\n  - {to_m_s: 0, by_m: 6}\n"),
+      AllOf(HasSubstr("test.yaml:5"), HasSubstr("speed"), HasSubstr("raise peak_m_s2")));
+  EXPECT_THAT(error_of_drive("kind: drive\npath: [{straight_m: 9}]\nspeed: [{to_m_s: 8}]\n"),
               AllOf(HasSubstr("stop_peak_m_s2"), HasSubstr("end of the path")));
-  EXPECT_THAT(error_of("kind: drive\npath: [{straight_m: 9}]\nroad: {roughness: E}\n"),
+  EXPECT_THAT(error_of_drive("kind: drive\npath: [{straight_m: 9}]\nroad: {roughness: E}\n"),
               AllOf(HasSubstr("test.yaml:3"), HasSubstr("road.roughness")));
-  EXPECT_THAT(error_of("kind: drive\npath: [{straight_m: 9}]\njitter: {min_wavelength_m: 100}\n"),
+  EXPECT_THAT(error_of_drive("kind: drive\npath: [{straight_m: 9}]\njitter: {min_wavelength_m: 100}\n"),
               AllOf(HasSubstr("test.yaml:3"), HasSubstr("max_wavelength_m")));
-  EXPECT_THAT(error_of("kind: drive\npath: [{straigth_m: 9}]\n"), HasSubstr("straight_m"));
+  EXPECT_THAT(error_of_drive("kind: drive\npath: [{straigth_m: 9}]\n"), HasSubstr("straight_m"));
 }
 
 }  // namespace

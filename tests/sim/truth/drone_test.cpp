@@ -12,7 +12,9 @@
 #include "sim/truth/motion.h"
 #include "sim/truth/series.h"
 #include "tests/sim/truth/stand_turn.h"
+#include "tests/support/constants.h"
 #include "tests/support/numeric_jet.h"
+#include "tests/support/temporary_folder.h"
 
 namespace tarmac::sim::truth {
 namespace {
@@ -22,7 +24,7 @@ using Eigen::Vector3d;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr double deg = 180 / std::numbers::pi;
+using tests::deg;
 
 TEST(Series, QuotientsRootsAndCompositionsHaveTheDerivativesOfWhatTheyAre) {
   // f(t) = sqrt(1 + sin(t)^2) exp(-t) / (2 + cos(3 t)) at t = 0.7
@@ -174,22 +176,17 @@ TEST(Drone, RotorsHaveTheConfiguredRmsAndSpinUpWithinTheRest) {
   EXPECT_NEAR(std::sqrt(w2 / n) * deg, 0.8, 0.08);
 }
 
-std::string error_of(const std::string& yaml) {
-  try {
-    fly(yaml, 30);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+std::string error_of_flight(const std::string& yaml) {
+  return tests::message_of<InputError>([&] { fly(yaml, 30); });
 }
 
 TEST(Drone, ErrorsNameFileLineAndField) {
-  EXPECT_THAT(
-      error_of(straight_flight("speed: [{to_m_s: 20, peak_m_s2: 12, onset_s: 0.1}]\nairframe: {max_tilt_deg: 30}\n")),
-      AllOf(HasSubstr("test.yaml:8"), HasSubstr("airframe"), HasSubstr("max_tilt_deg")));
-  EXPECT_THAT(error_of("kind: drone\nstart: {speed_m_s: 3}\npath: [{straight_m: 9}]\n"),
+  EXPECT_THAT(error_of_flight(straight_flight(
+                  "speed: [{to_m_s: 20, peak_m_s2: 12, onset_s: 0.1}]\nairframe: {max_tilt_deg: 30}\n")),
+              AllOf(HasSubstr("test.yaml:8"), HasSubstr("airframe"), HasSubstr("max_tilt_deg")));
+  EXPECT_THAT(error_of_flight("kind: drone\nstart: {speed_m_s: 3}\npath: [{straight_m: 9}]\n"),
               AllOf(HasSubstr("test.yaml:2"), HasSubstr("start.speed_m_s"), HasSubstr("on the ground")));
-  EXPECT_THAT(error_of("kind: drone\npath: [{straight_m: 90}]\nspeed:\n  - {to_m_s: 3, abs_m_s2: 1}\n"),
+  EXPECT_THAT(error_of_flight("kind: drone\npath: [{straight_m: 90}]\nspeed:\n  - {to_m_s: 3, abs_m_s2: 1}\n"),
               AllOf(HasSubstr("test.yaml:4"), HasSubstr("abs_m_s2")));
 }
 

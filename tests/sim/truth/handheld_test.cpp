@@ -11,6 +11,7 @@
 #include "sim/truth/gait.h"
 #include "sim/truth/motion.h"
 #include "tests/sim/truth/stand_turn.h"
+#include "tests/support/constants.h"
 
 namespace tarmac::sim::truth {
 namespace {
@@ -19,7 +20,7 @@ using namespace core;
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-constexpr double deg = 180 / std::numbers::pi;
+using tests::deg;
 
 /// Straight on at one speed, without looks around.
 std::shared_ptr<const SmoothTrajectory> straight_on(const std::string& gait, double speed_m_s, std::uint64_t seed,

@@ -11,13 +11,14 @@
 
 #include "sim/truth/motion.h"
 #include "tests/sim/truth/stand_turn.h"
+#include "tests/support/constants.h"
 
 namespace tarmac::sim::truth {
 namespace {
 
 using namespace core;
 
-constexpr double deg = 180 / std::numbers::pi;
+using tests::deg;
 
 double forward(const Kinematics& k) {
   return k.T_world_body.linear().col(0).dot(k.a_world);
