@@ -7,10 +7,10 @@
 Prints a Markdown table a drive: for every method the unknowns of its motion a sweep; the geometric mean over seeds of deskew error
 and one-sweep error with a 95 % interval (of the mean logarithm, by Student's t), ATE, how many sweeps are scored, condition
 of the 6-DOF block, by what factor its stated deviations are too small and how many poses their 95 % ellipsoids cover, and
-what a sweep costs; and, below, the paired ratio of every method with an IMU to ct-icp in deskew error (seed by seed). The
+what a sweep costs; and, below, the paired ratio of every causal method with an IMU to ct-icp in deskew error (seed by seed). The
 figure has a panel a drive: deskew error by method above, over those unknowns below.
 
-Exit code 1 when a cell is missing or did not end well.
+Exit code 1 when a cell did not end well, is missing beside others of its drive, or has no figure.
 """
 import argparse
 import csv
@@ -67,6 +67,9 @@ def complete(drives):
             missing = seeds - set(cells[method][STATUS] if method in cells else ())
             if missing:
                 sys.exit(f"{drive}, {method}: no seed {', '.join(map(str, sorted(missing)))}: run the sweep to its end")
+            for metric in (DESKEW, STEP, ATE, TIME):
+                if seeds - set(cells[method][metric]):
+                    sys.exit(f"{drive}, {method}: no {metric} for seed {', '.join(map(str, sorted(seeds - set(cells[method][metric]))))}")
     return {drive: {method: cells[method] for method in DOF} for drive, cells in drives.items()}
 
 
