@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "core/knots.h"
-#include "core/spline_fit.h"
 #include "core/shortest_turn.h"
+#include "core/spline_fit.h"
 #include "estimators/dead_reckoning/sample_chain.h"
 #include "estimators/window/ceres_window.h"
 

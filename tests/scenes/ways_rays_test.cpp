@@ -12,6 +12,7 @@
 #include "scenes/runway/layout.h"
 #include "scenes/taxiway/section.h"
 #include "sim/raycast/tracer.h"
+#include "tests/scenes/support.h"
 
 namespace tarmac::scenes {
 namespace {
